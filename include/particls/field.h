@@ -1,0 +1,77 @@
+/// @file field.h
+/// Fields: every persistent number of the world, described once. Checkpoints, frames, `particls info`, the docs and re-ordering all read this table.
+#ifndef PARTICLS_FIELD_H
+#define PARTICLS_FIELD_H
+
+#include <particls/status.h>
+#include <particls/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct pls_world;
+
+typedef enum pls_type
+{
+    PLS_F64,
+    PLS_F32,
+    PLS_U32,
+    PLS_U16,
+    PLS_U8
+} pls_type;
+
+/// Bytes of one component.
+size_t pls_type_size(pls_type type);
+
+typedef enum pls_field_flags
+{
+    PLS_FIELD_PERSISTS = 1, ///< lives from step to step: checkpointed and hashed
+    PLS_FIELD_FRAME = 2,    ///< written to frames by default
+    PLS_FIELD_ID = 4        ///< the persistent number that orders rows
+} pls_field_flags;
+
+/// One field of one table. A value lies at row * stride + offset of its column.
+typedef struct pls_field
+{
+    const char *name;
+    pls_type type;
+    int components;
+    unsigned flags;
+    const char *unit;
+    const char *meaning;
+    int column;      ///< which column of the table
+    size_t offset;   ///< bytes within a row of the column
+} pls_field;
+
+typedef enum pls_table_kind
+{
+    PLS_TABLE_BODIES,
+    PLS_TABLE_CONTACTS, ///< touching contacts, in order of (lower id, higher id); made on request
+    PLS_TABLE_STATES,
+    PLS_TABLE_COUNT
+} pls_table_kind;
+
+/// All fields of a table, `*count` of them.
+const pls_field *pls_fields(pls_table_kind table, size_t *count);
+const char *pls_table_name(pls_table_kind table);
+/// Null when there is none.
+const pls_field *pls_field_find(pls_table_kind table, const char *name);
+
+/// Where a field lies: value c of row k at (const char *)data + k * stride, c-th of `components`.
+typedef struct pls_field_view
+{
+    const void *data;
+    size_t stride; ///< bytes from row to row
+    size_t count;  ///< rows
+    pls_type type;
+    int components;
+} pls_field_view;
+
+/// View of a body field, rows in memory order (see `pls_world_body_rows` for the order of ids). Valid until the next step or change of the world.
+pls_status pls_world_body_field(const struct pls_world *world, const char *name, pls_field_view *view);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,116 @@
+/// @file observe.h
+/// Observers: what a run measures, when, and of whom (P1 section 4.3).
+#ifndef PARTICLS_OBSERVE_H
+#define PARTICLS_OBSERVE_H
+
+#include <particls/world.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// When an observer looks: every `every` seconds or every `every_steps` steps (one of the two is zero), from `start` to `end`. Time schedules fire at the
+/// first step at or after k * every. The first look is at the start.
+typedef struct pls_schedule
+{
+    double every;         ///< [s]
+    uint64_t every_steps; ///< steps
+    double start, end;    ///< [s]; 0 and infinity by default
+} pls_schedule;
+
+/// What a collection observer can measure.
+enum
+{
+    PLS_MEASURE_STRESS = 1,       ///< Cauchy stress, P1 eq. 24 with each pair once, tension positive [Pa]
+    PLS_MEASURE_TANGENT = 2,      ///< tangent operator D, P1 eq. 29, all components [Pa]
+    PLS_MEASURE_FABRIC = 4,       ///< mean of n (x) n over contacts
+    PLS_MEASURE_COORDINATION = 8, ///< contacts per body, touching contacts
+    PLS_MEASURE_ENERGY = 16,      ///< energies by kind [J]
+    PLS_MEASURE_MOMENTUM = 32,    ///< linear and angular momentum
+    PLS_MEASURE_POROSITY = 64     ///< 1 - solid volume / volume
+};
+
+typedef enum pls_volume_kind
+{
+    PLS_VOLUME_BOUNDING_BOX, ///< smallest axis-aligned box that holds the bounded bodies of the collection (P1)
+    PLS_VOLUME_BOX,          ///< the box `lower`..`upper`
+    PLS_VOLUME_PERIODIC,     ///< the periodic box (bounding box along other axes)
+    PLS_VOLUME_VALUE         ///< `volume`
+} pls_volume_kind;
+
+/// A collection: the bodies it holds, the volume it is averaged over and what is measured.
+typedef struct pls_collection_def
+{
+    unsigned quantities;          ///< PLS_MEASURE_ bits
+    char group[PLS_NAME_SIZE];    ///< only bodies of this group; "" or "all": all
+    pls_volume_kind volume_kind;
+    double volume;                ///< [m^3], 2D [m^2] times thickness; for PLS_VOLUME_VALUE
+    pls_vec3 lower, upper;        ///< for PLS_VOLUME_BOX [m]: bodies with their centre inside, contacts with their point inside
+    bool include_walls;           ///< count contacts with unbounded bodies in stress, tangent and fabric; true by default (P1)
+} pls_collection_def;
+
+/// What was measured. Components that do not exist in 2D are zero.
+typedef struct pls_collection
+{
+    double volume;                ///< [m^3]
+    double stress[3][3];          ///< [Pa]
+    double tangent[3][3][3][3];   ///< [Pa]
+    double fabric[3][3];
+    double coordination;          ///< mean number of contacts of a bounded body
+    uint64_t contacts;
+    double energy_kinetic, energy_rotation, energy_normal, energy_shear, energy_potential, energy_damped, energy_slid; ///< [J]
+    pls_vec3 momentum, angular_momentum;
+    double porosity;
+} pls_collection;
+
+pls_collection_def pls_default_collection_def(void);
+/// Measure now. Sums are in order of ids: the same bits for any number of threads.
+pls_status pls_measure_collection(pls_world *world, const pls_collection_def *def, pls_collection *out);
+
+/// A tracked body or group: columns for each named quantity (any body field of the field table: "position", "velocity", "orientation",
+/// "angular_velocity", "force", "torque", "scale", ...) of each body.
+typedef struct pls_particle_def
+{
+    char group[PLS_NAME_SIZE];            ///< its entry's name; every body of the group is tracked
+    int quantity_count;
+    char quantities[16][PLS_NAME_SIZE];
+} pls_particle_def;
+
+typedef enum pls_observer_kind
+{
+    PLS_OBSERVE_PARTICLE,
+    PLS_OBSERVE_COLLECTION,
+    PLS_OBSERVE_FRAMES,
+    PLS_OBSERVE_CHECKPOINT,
+    PLS_OBSERVE_USER
+} pls_observer_kind;
+
+/// Fields written to frames: the default set of the field table plus `fields`; contacts as lines if `contacts`.
+typedef struct pls_frames_def
+{
+    bool contacts;
+    int field_count;
+    char fields[16][PLS_NAME_SIZE];
+} pls_frames_def;
+
+/// One observer of a run.
+typedef struct pls_observer_def
+{
+    char name[PLS_NAME_SIZE]; ///< names its file series/<name>.csv; unique in the run
+    pls_observer_kind kind;
+    pls_schedule schedule;
+    pls_particle_def particle;
+    pls_collection_def collection;
+    pls_frames_def frames;
+    /// PLS_OBSERVE_USER: called with the world after the step. Must not change the world. A failure stops the run.
+    pls_status (*function)(void *context, pls_world *world);
+    void *context;
+} pls_observer_def;
+
+/// True when the schedule fires at this step (time t, step length dt).
+bool pls_schedule_due(const pls_schedule *schedule, uint64_t step, double time, double dt);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,118 @@
+// pair_list.h -- the Verlet list: pairs that touch or may soon touch, with what each contact remembers and where its force goes.
+//
+// Candidates are numbered 0 .. count, in sections of one kind of pair and one law; sphere pairs first, wall pairs behind. Within a section they are in order
+// of the memory row of the body with the lower number, then of the partner's number, so that the loop streams. A section begins at a multiple of 8, and so do the
+// blocks of work cut from it; the candidates that fill it up are pairs (0, 0) that are never active.
+//
+// Which pairs are listed, and where, depends on the skin and on the order of bodies in memory; what comes of it does not: a candidate that does not touch
+// leaves no trace, and each body gathers its touching contacts in order of the partner's number.
+#ifndef PLS_CONTACT_PAIR_LIST_H
+#define PLS_CONTACT_PAIR_LIST_H
+
+#include "law/law_table.h"
+#include "model/bodies.h"
+#include "model/domain.h"
+
+enum
+{
+    PLS_CONTACT_BLOCK = PLS_LAW_BATCH, ///< candidates per block of work: its arrays stay in the first-level cache
+    PLS_SLOT = 8,            ///< doubles in the slot of a sphere pair: F (3), delta/2, n x Ft (3), booked power and work
+    PLS_WALL_SLOT = 16,      ///< doubles in the slot of a wall pair: F (3), power, torque on i (3), work, torque on the wall (3), spare
+    PLS_SPRING_STRIDE = 4    ///< doubles of history when the law keeps at most one number besides the spring; twice that otherwise
+};
+
+typedef struct pls_pair_section
+{
+    bool wall;       ///< body i against the half-space `wall_row`
+    uint32_t wall_row;
+    uint16_t law;    ///< index in the law table
+    int stride;      ///< doubles of history per candidate
+    size_t first;    ///< first candidate, a multiple of 8
+    size_t count;    ///< candidates
+    size_t history;  ///< first double of history
+} pls_pair_section;
+
+/// A block of work: candidates first .. first + count of one section.
+typedef struct pls_pair_block
+{
+    uint32_t section;
+    uint32_t count;
+    size_t first;
+} pls_pair_block;
+
+/// Entries of a body's gather row: candidate * 2 + side, side 1 where the body is j.
+typedef struct pls_gather_rows
+{
+    uint32_t *start, *entry;
+    size_t start_capacity, entry_capacity;
+} pls_gather_rows;
+
+/// Zero-initialise; `pls_pair_list_free` releases.
+typedef struct pls_pair_list
+{
+    pls_pair_section *section;
+    size_t section_count, section_capacity;
+    pls_pair_block *block;
+    size_t block_count, block_capacity;
+
+    size_t count;      ///< candidates, fill included
+    size_t wall_first; ///< first wall candidate
+    size_t listed;     ///< true candidates
+    size_t capacity;
+    uint32_t *row_i, *row_j;
+    int16_t (*shift)[4]; ///< periodic images: j's image lies at X_j + shift * edge; only in periodic worlds
+    size_t shift_capacity;
+    uint8_t *touch;      ///< bit k % 8 of byte k / 8: candidate k touched at the last step
+    size_t touch_capacity;
+    double *history;
+    size_t history_capacity;
+    double *slot; ///< PLS_SLOT per sphere pair, then PLS_WALL_SLOT per wall pair
+    size_t slot_capacity;
+    pls_gather_rows pairs, walls;
+
+    // when it is stale
+    double (*reference)[3]; ///< positions when it was made [m]
+    double *reference_radius;
+    size_t reference_capacity;
+    double skin;         ///< it was made with [m]
+    double drift;        ///< bound on how much two bodies can have come nearer since [m]
+    double image_drift;  ///< the part of it that a stretching box makes [m]
+    double image_reach[3]; ///< how many edges lie between bodies of a listed pair, at most
+    bool stale;
+    uint64_t builds;
+} pls_pair_list;
+
+static inline double *pls_wall_slot(const pls_pair_list *list, size_t candidate)
+{
+    return list->slot + list->wall_first * PLS_SLOT + (candidate - list->wall_first) * PLS_WALL_SLOT;
+}
+static inline bool pls_pair_touches(const pls_pair_list *list, size_t candidate) { return (list->touch[candidate >> 3] >> (candidate & 7)) & 1; }
+
+/// What touching contacts remember, keyed by body numbers: carried across rebuilds, and what a checkpoint holds.
+/// Zero-initialise; `pls_contact_memory_free` releases.
+typedef struct pls_contact_memory
+{
+    struct pls_remembered
+    {
+        uint32_t number_i, number_j;
+        double spring[3];
+        double history[PLS_LAW_MAX_HISTORY];
+    } *entry;
+    size_t count, capacity;
+} pls_contact_memory;
+
+pls_status pls_contact_memory_reserve(pls_contact_memory *memory, size_t count);
+void pls_contact_memory_free(pls_contact_memory *memory);
+/// Everything the touching contacts of the list remember, in list order.
+pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, pls_contact_memory *memory);
+
+/// Make the list: all pairs nearer than `skin`, with the memory of contacts from `memory`.
+/// NOT_FOUND names two materials without a law; LIMIT_EXCEEDED for a periodic box narrower than two interaction ranges.
+pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double skin,
+                               const pls_contact_memory *memory);
+void pls_pair_list_free(pls_pair_list *list);
+size_t pls_pair_list_bytes(const pls_pair_list *list);
+/// Touching contacts now.
+size_t pls_pair_list_touching(const pls_pair_list *list);
+
+#endif

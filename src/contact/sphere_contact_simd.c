@@ -1,0 +1,426 @@
+// sphere_contact_simd.c -- the hot loop: one block of candidates at a time, as short loops over arrays that stay in the first-level cache:
+//
+//     filter   which candidates touch (positions and radii only), and which of them touch for the first time
+//     load     normal, overlap, relative velocity at the contact point, the spring carried into the contact frame of now
+//     law      forces from overlap, velocity and spring (the user's door)
+//     store    force and n x shear into the contact's own slot, spring back to its history
+//
+// Body rows are loaded whole and transposed in registers. Everything is lane by lane, so the width does not show in the bits.
+//
+// Contact point (P1 section 3.1): c = (x1 + x2)/2, so the lever arms are (r_i - delta/2) n and -(r_j - delta/2) n, and the relative velocity is
+// v_i - v_j + (l_i w_i + l_j w_j) x n at this one point.
+//
+// The spring. s' = v_t is integrated by the trapezoid rule without remembering the last velocity: what is stored between steps is b = s + (dt/2) v_t, the
+// spring half a step ahead. A step forms s = b + (dt/2) v_t of its own velocity, lets the law shorten it, and stores s + (dt/2) v_t. The contact frame turns in
+// the same two halves: b is projected on the new tangent plane with its length kept, turned about n by half the angle of the pair's mean spin, and after the
+// law by the other half. A contact that begins within the step has had min(dt, delta/v_n) of it.
+
+#include "contact/sphere_contact.h"
+
+#include <string.h>
+
+static const pls_v4i sign_of_first_three = {INT64_MIN, INT64_MIN, INT64_MIN, 0};
+
+static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ sign_of_first_three); }
+
+static inline pls_v4 image_shift(const pls_pair_list *list, size_t c, pls_v4 edge)
+{
+    const int16_t *s = list->shift[c];
+    return (pls_v4){s[0], s[1], s[2], 0.0} * edge;
+}
+
+// ---- filter -------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Note the touching lanes of candidates c .. c + 7 and clear the history of those that begin.
+static inline void note_touching(pls_pair_list *list, const pls_pair_section *section, size_t c, unsigned now, pls_contact_work *work)
+{
+    unsigned before = list->touch[c >> 3], fresh = now & ~before;
+    list->touch[c >> 3] = (uint8_t)now;
+    while (fresh)
+    {
+        unsigned lane = (unsigned)__builtin_ctz(fresh);
+        fresh &= fresh - 1;
+        work->fresh[work->fresh_count++] = (uint32_t)(work->active_count + (size_t)__builtin_popcount(now & ((1u << lane) - 1)));
+        double *history = list->history + section->history + (c + lane - section->first) * (size_t)section->stride;
+        memset(history, 0, (size_t)section->stride * sizeof *history);
+    }
+    uint32_t *active = work->active + work->active_count;
+    work->active_count += (size_t)__builtin_popcount(now);
+    while (now)
+    {
+        *active++ = (uint32_t)(c + (size_t)__builtin_ctz(now));
+        now &= now - 1;
+    }
+}
+
+static inline unsigned valid_lanes(const pls_pair_block *block, size_t k)
+{
+    return block->count - k >= 8 ? 0xffu : (1u << (block->count - k)) - 1;
+}
+
+static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
+                                                               const pls_pair_block *block, pls_contact_work *work, int periodic)
+{
+    const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
+    for (size_t k = 0; k < block->count; k += 8)
+    {
+        size_t c = block->first + k;
+        unsigned now = 0;
+        for (int half = 0; half < 8; half += PLS_W)
+        {
+            pls_v4 row[PLS_W];
+            for (int lane = 0; lane < PLS_W; ++lane)
+            {
+                size_t m = c + (size_t)(half + lane);
+                row[lane] = pls_v4_load(&in->place[list->row_j[m]].x) + flip_first_three(pls_v4_load(&in->place[list->row_i[m]].x));
+                if (periodic) row[lane] += image_shift(list, m, edge);
+            }
+            pls_vd d[4];
+            pls_columns4(row, d);
+            now |= pls_vd_less(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], d[3] * d[3]) << half;
+        }
+        note_touching(list, section, c, now & valid_lanes(block, k), work);
+    }
+}
+
+// ---- load -------------------------------------------------------------------------------------------------------------------------------------------------
+
+typedef struct frame
+{
+    pls_vd n[3], delta, v[3], spin; ///< v: relative velocity at the contact point; spin: mean spin about n
+    pls_vd spring[3];               ///< as stored
+} frame;
+
+/// Normal and tangential velocity, and the spring in the frame of now.
+static inline void set_frame(pls_contact_work *work, size_t k, const frame *f, const pls_contact_input *in)
+{
+    const pls_vd zero = pls_vd_set(0.0), one = pls_vd_set(1.0);
+    pls_vd vn = f->v[0] * f->n[0] + f->v[1] * f->n[1] + f->v[2] * f->n[2];
+    pls_vd vt[3], t[3];
+    for (int a = 0; a < 3; ++a) vt[a] = f->v[a] - vn * f->n[a];
+
+    const pls_vd *s = f->spring;
+    pls_vd sn = s[0] * f->n[0] + s[1] * f->n[1] + s[2] * f->n[2];
+    for (int a = 0; a < 3; ++a) t[a] = s[a] - sn * f->n[a];
+    pls_vd whole = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], part = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
+    pls_vi some = (pls_vi)(part > zero);
+    pls_vd keep = pls_vd_sqrt(pls_vd_pick(some, whole, one) / pls_vd_pick(some, part, one));
+
+    pls_vd a = (0.25 * in->dt) * f->spin, inv = one / (one + a * a);
+    pls_vd cosine = keep * (one - a * a) * inv, sine = keep * (2.0 * a) * inv;
+    pls_vd turned[3] = {cosine * t[0] + sine * (f->n[1] * t[2] - f->n[2] * t[1]), cosine * t[1] + sine * (f->n[2] * t[0] - f->n[0] * t[2]),
+                        cosine * t[2] + sine * (f->n[0] * t[1] - f->n[1] * t[0])};
+    for (int c = 0; c < 3; ++c)
+    {
+        pls_vd_store(&work->normal[c][k], f->n[c]);
+        pls_vd_store(&work->slip_velocity[c][k], vt[c]);
+        pls_vd_store(&work->spring[c][k], turned[c] + in->dt_before * vt[c]);
+    }
+    pls_vd_store(&work->delta[k], f->delta);
+    pls_vd_store(&work->normal_velocity[k], vn);
+    pls_vd_store(&work->spin[k], a);
+}
+
+static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
+                                                             pls_contact_work *work, int periodic, int effective)
+{
+    const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
+    const pls_v4 edge_rate = {in->domain->edge_rate[0], in->domain->edge_rate[1], in->domain->edge_rate[2], 0.0};
+    const pls_vd one = pls_vd_set(1.0);
+    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    {
+        pls_v4 low[PLS_W], high[PLS_W], turn[PLS_W], sum[PLS_W], spring[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane)
+        {
+            size_t c = work->active[k + (size_t)lane];
+            uint32_t i = list->row_i[c], j = list->row_j[c];
+            pls_v4 xi = pls_v4_load(&in->place[i].x), xj = pls_v4_load(&in->place[j].x);
+            pls_v4 wi = pls_v4_load(&in->spin[i].wx), wj = pls_v4_load(&in->spin[j].wx);
+            low[lane] = xj + flip_first_three(xi);
+            high[lane] = pls_v4_load(&in->place[i].vx) + flip_first_three(pls_v4_load(&in->place[j].vx));
+            if (periodic)
+            {
+                low[lane] += image_shift(list, c, edge);
+                high[lane] -= image_shift(list, c, edge_rate);
+            }
+            turn[lane] = xi[3] * wi + xj[3] * wj;
+            sum[lane] = wi + wj;
+            spring[lane] = pls_v4_load(list->history + section->history + (c - section->first) * (size_t)section->stride);
+        }
+        pls_vd d[8], w[8], s[4];
+        pls_columns8(low, high, d);
+        pls_columns8(turn, sum, w);
+        pls_columns4(spring, s);
+
+        pls_vd distance = pls_vd_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inv = one / distance;
+        frame f;
+        for (int a = 0; a < 3; ++a) f.n[a] = d[a] * inv, f.spring[a] = s[a];
+        f.delta = d[3] - distance;
+        pls_vd half = 0.5 * f.delta;
+        pls_vd u[3];
+        for (int a = 0; a < 3; ++a) u[a] = w[a] - half * w[4 + a]; // l_i w_i + l_j w_j
+        f.v[0] = d[4] + (u[1] * f.n[2] - u[2] * f.n[1]);
+        f.v[1] = d[5] + (u[2] * f.n[0] - u[0] * f.n[2]);
+        f.v[2] = d[6] + (u[0] * f.n[1] - u[1] * f.n[0]);
+        f.spin = 0.5 * (w[4] * f.n[0] + w[5] * f.n[1] + w[6] * f.n[2]);
+        set_frame(work, k, &f, in);
+        pls_vd_store(&work->lever[k], half);
+        if (effective)
+        {
+            pls_vd_store(&work->effective_mass[k], one / d[7]);
+            for (size_t lane = k; lane < k + PLS_W; ++lane)
+            {
+                double ri = in->place[list->row_i[work->active[lane]]].radius, rj = in->place[list->row_j[work->active[lane]]].radius;
+                work->effective_radius[lane] = ri * rj / (ri + rj);
+            }
+        }
+    }
+}
+
+// ---- store ------------------------------------------------------------------------------------------------------------------------------------------------
+
+static inline int lanes_left(const pls_contact_work *work, size_t k)
+{
+    return work->active_count - k < PLS_W ? (int)(work->active_count - k) : PLS_W;
+}
+
+/// Spring (and the law's own numbers) back to the history, the spring half a step and half a turn ahead.
+static inline void store_history(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, size_t k, int kept)
+{
+    const pls_vd one = pls_vd_set(1.0);
+    pls_vd n[3], s[3], a = pls_vd_load(&work->spin[k]), inv = one / (one + a * a), cosine = (one - a * a) * inv, sine = (2.0 * a) * inv;
+    for (int c = 0; c < 3; ++c)
+    {
+        n[c] = pls_vd_load(&work->normal[c][k]);
+        s[c] = pls_vd_load(&work->spring[c][k]) + in->dt_after * pls_vd_load(&work->slip_velocity[c][k]);
+    }
+    pls_vd column[4] = {cosine * s[0] + sine * (n[1] * s[2] - n[2] * s[1]), cosine * s[1] + sine * (n[2] * s[0] - n[0] * s[2]),
+                        cosine * s[2] + sine * (n[0] * s[1] - n[1] * s[0]), kept > 0 ? pls_vd_load(&work->history[0][k]) : pls_vd_set(0.0)};
+    double *row[PLS_W];
+    int lanes = lanes_left(work, k);
+    for (int lane = 0; lane < PLS_W; ++lane)
+        row[lane] = list->history + section->history + (work->active[k + (size_t)lane] - section->first) * (size_t)section->stride;
+    pls_rows4(column, row, lanes);
+    for (int h = 1; h < kept; ++h)
+        for (int lane = 0; lane < lanes; ++lane) row[lane][3 + h] = work->history[h][k + (size_t)lane];
+}
+
+static inline void store_pairs(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, int kept)
+{
+    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    {
+        pls_vd n[3], ft[3], fn = pls_vd_load(&work->normal_force[k]), column[8];
+        for (int a = 0; a < 3; ++a)
+        {
+            n[a] = pls_vd_load(&work->normal[a][k]);
+            ft[a] = pls_vd_load(&work->shear_force[a][k]);
+            column[a] = ft[a] - fn * n[a];
+        }
+        column[3] = pls_vd_load(&work->lever[k]);
+        column[4] = n[1] * ft[2] - n[2] * ft[1];
+        column[5] = n[2] * ft[0] - n[0] * ft[2];
+        column[6] = n[0] * ft[1] - n[1] * ft[0];
+        column[7] = pls_vd_pack(pls_vd_load(&work->damping_power[k]), pls_vd_load(&work->slip_work[k]));
+        double *row[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane) row[lane] = list->slot + (size_t)work->active[k + (size_t)lane] * PLS_SLOT;
+        pls_rows8(column, row, lanes_left(work, k));
+        store_history(list, in, section, work, k, kept);
+    }
+}
+
+// ---- walls ------------------------------------------------------------------------------------------------------------------------------------------------
+
+/// A half-space: outward normal N through a point, moving as a rigid body. n = -N, overlap r - N.(x - X).
+typedef struct wall_frame
+{
+    double normal[3], position[3], velocity[3], spin[3], inv_mass;
+} wall_frame;
+
+static wall_frame wall_of(const pls_contact_input *in, uint32_t row)
+{
+    const pls_body_place *p = &in->place[row];
+    const pls_body_spin *w = &in->spin[row];
+    pls_vec3 n = pls_wall_normal(&in->orientation[row], in->domain->dimension);
+    return (wall_frame){{n.x, n.y, n.z}, {p->x, p->y, p->z}, {p->vx, p->vy, p->vz}, {w->wx, w->wy, w->wz}, p->inv_mass};
+}
+
+static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_pair_block *block,
+                         pls_contact_work *work, const wall_frame *wall)
+{
+    for (size_t k = 0; k < block->count; k += 8)
+    {
+        size_t c = block->first + k;
+        unsigned now = 0;
+        for (int half = 0; half < 8; half += PLS_W)
+        {
+            pls_v4 row[PLS_W];
+            for (int lane = 0; lane < PLS_W; ++lane) row[lane] = pls_v4_load(&in->place[list->row_i[c + (size_t)(half + lane)]].x);
+            pls_vd d[4];
+            pls_columns4(row, d);
+            pls_vd height = wall->normal[0] * (d[0] - wall->position[0]) + wall->normal[1] * (d[1] - wall->position[1]) + wall->normal[2] * (d[2] - wall->position[2]);
+            now |= pls_vd_less(height, d[3]) << half;
+        }
+        note_touching(list, section, c, now & valid_lanes(block, k), work);
+    }
+}
+
+static void load_walls(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, const wall_frame *wall)
+{
+    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    {
+        pls_v4 low[PLS_W], high[PLS_W], turn[PLS_W], spring[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane)
+        {
+            size_t c = work->active[k + (size_t)lane];
+            uint32_t i = list->row_i[c];
+            low[lane] = pls_v4_load(&in->place[i].x);
+            high[lane] = pls_v4_load(&in->place[i].vx);
+            turn[lane] = pls_v4_load(&in->spin[i].wx);
+            spring[lane] = pls_v4_load(list->history + section->history + (c - section->first) * (size_t)section->stride);
+        }
+        pls_vd d[8], w[4], s[4], x[3], arm[3], height = pls_vd_set(0.0);
+        pls_columns8(low, high, d);
+        pls_columns4(turn, w);
+        pls_columns4(spring, s);
+        for (int a = 0; a < 3; ++a)
+        {
+            x[a] = d[a] - wall->position[a];
+            height = height + wall->normal[a] * x[a];
+        }
+        frame f;
+        for (int a = 0; a < 3; ++a) f.n[a] = pls_vd_set(-wall->normal[a]), f.spring[a] = s[a];
+        f.delta = d[3] - height;
+        pls_vd lever = d[3] - 0.5 * f.delta;
+        for (int a = 0; a < 3; ++a)
+        {
+            arm[a] = x[a] + lever * f.n[a]; // contact point from the wall's position
+            pls_vd_store(&work->point[a][k], arm[a]);
+        }
+        const double *ww = wall->spin;
+        for (int a = 0; a < 3; ++a)
+        {
+            int b = (a + 1) % 3, c = (a + 2) % 3;
+            pls_vd of_body = d[4 + a] + lever * (w[b] * f.n[c] - w[c] * f.n[b]);
+            pls_vd of_wall = wall->velocity[a] + (ww[b] * arm[c] - ww[c] * arm[b]);
+            f.v[a] = of_body - of_wall;
+        }
+        f.spin = 0.5 * ((w[0] + ww[0]) * f.n[0] + (w[1] + ww[1]) * f.n[1] + (w[2] + ww[2]) * f.n[2]);
+        set_frame(work, k, &f, in);
+        pls_vd_store(&work->lever[k], lever);
+        pls_vd_store(&work->effective_mass[k], 1.0 / (d[7] + wall->inv_mass));
+        pls_vd_store(&work->effective_radius[k], d[3]);
+    }
+}
+
+static void store_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, int kept)
+{
+    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    {
+        pls_vd n[3], ft[3], f[3], arm[3], fn = pls_vd_load(&work->normal_force[k]), lever = pls_vd_load(&work->lever[k]), first[8], second[8];
+        for (int a = 0; a < 3; ++a)
+        {
+            n[a] = pls_vd_load(&work->normal[a][k]);
+            ft[a] = pls_vd_load(&work->shear_force[a][k]);
+            arm[a] = pls_vd_load(&work->point[a][k]);
+            f[a] = ft[a] - fn * n[a];
+        }
+        for (int a = 0; a < 3; ++a)
+        {
+            int b = (a + 1) % 3, c = (a + 2) % 3;
+            first[a] = f[a];
+            first[4 + a] = lever * (n[b] * ft[c] - n[c] * ft[b]); // (c - X_i) x F
+            second[a] = arm[c] * f[b] - arm[b] * f[c];             // (c - X_j) x (-F)
+            second[4 + a] = pls_vd_set(0.0);
+        }
+        first[3] = pls_vd_load(&work->damping_power[k]);
+        first[7] = pls_vd_load(&work->slip_work[k]);
+        second[3] = second[7] = pls_vd_set(0.0);
+        double *row[PLS_W], *next[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane)
+        {
+            row[lane] = pls_wall_slot(list, work->active[k + (size_t)lane]);
+            next[lane] = row[lane] + 8;
+        }
+        pls_rows8(first, row, lanes_left(work, k));
+        pls_rows8(second, next, lanes_left(work, k));
+        store_history(list, in, section, work, k, kept);
+    }
+}
+
+// ---- the block --------------------------------------------------------------------------------------------------------------------------------------------
+
+/// A contact that began in this step: its spring has had the time since touch only.
+static void begin_springs(pls_contact_work *work, const pls_contact_input *in)
+{
+    for (size_t m = 0; m < work->fresh_count; ++m)
+    {
+        size_t k = work->fresh[m];
+        double vn = work->normal_velocity[k], longest = 2.0 * in->dt_before;
+        double since = vn * longest > work->delta[k] ? work->delta[k] / vn : longest;
+        for (int a = 0; a < 3; ++a) work->spring[a][k] = since * work->slip_velocity[a][k];
+    }
+}
+
+static void load_law_history(const pls_pair_list *list, const pls_pair_section *section, pls_contact_work *work, int kept)
+{
+    for (size_t k = 0; k < (work->active_count + 7) / 8 * 8; ++k)
+    {
+        const double *row = list->history + section->history + (work->active[k] - section->first) * (size_t)section->stride;
+        for (int h = 0; h < kept; ++h) work->history[h][k] = row[3 + h];
+    }
+}
+
+static void apply_law(const pls_law *law, const pls_contact_input *in, pls_contact_work *work)
+{
+    pls_law_batch batch = {
+        .count = (work->active_count + 7) / 8 * 8,
+        .dt = in->dt,
+        .constants = law->constants,
+        .delta = work->delta,
+        .normal_velocity = work->normal_velocity,
+        .slip_velocity_x = work->slip_velocity[0],
+        .slip_velocity_y = work->slip_velocity[1],
+        .slip_velocity_z = work->slip_velocity[2],
+        .effective_radius = work->effective_radius,
+        .effective_mass = work->effective_mass,
+        .spring_x = work->spring[0],
+        .spring_y = work->spring[1],
+        .spring_z = work->spring[2],
+        .normal_force = work->normal_force,
+        .shear_force_x = work->shear_force[0],
+        .shear_force_y = work->shear_force[1],
+        .shear_force_z = work->shear_force[2],
+        .damping_power = work->damping_power,
+        .slip_work = work->slip_work,
+    };
+    for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) batch.history[h] = work->history[h];
+    law->ops->evaluate(&batch);
+}
+
+void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *in, const pls_pair_block *block, pls_contact_work *work)
+{
+    const pls_pair_section *section = &list->section[block->section];
+    const pls_law *law = &in->laws->law[section->law];
+    int kept = law->ops->history;
+    wall_frame wall = {0};
+    work->active_count = work->fresh_count = 0;
+    if (section->wall)
+    {
+        wall = wall_of(in, section->wall_row);
+        filter_walls(list, in, section, block, work, &wall);
+    }
+    else if (in->domain->any_periodic) filter_pairs(list, in, section, block, work, 1);
+    else filter_pairs(list, in, section, block, work, 0);
+    if (work->active_count == 0) return;
+    for (size_t k = work->active_count; k % 8 != 0; ++k) work->active[k] = work->active[work->active_count - 1]; // padding repeats a contact
+
+    if (section->wall) load_walls(list, in, section, work, &wall);
+    else if (in->domain->any_periodic) load_pairs(list, in, section, work, 1, law->ops->needs_effective);
+    else if (law->ops->needs_effective) load_pairs(list, in, section, work, 0, 1);
+    else load_pairs(list, in, section, work, 0, 0);
+    if (kept > 0) load_law_history(list, section, work, kept);
+    begin_springs(work, in);
+    apply_law(law, in, work);
+    if (section->wall) store_walls(list, in, section, work, kept);
+    else store_pairs(list, in, section, work, kept);
+}

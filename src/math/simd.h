@@ -1,0 +1,209 @@
+// simd.h -- portable vectors with the same bits on every width.
+//
+// Files named *_simd.c are compiled once per instruction set (PLS_ISA = v2, v3, v4 for the x86-64 levels; generic elsewhere); PLS_SIMD(f) gives each copy of a
+// function its own name and PLS_SIMD_SELECT picks one at run time. Lanes never mix: a contact or body is computed by the same IEEE operations in the same
+// order on any width (no contraction, no approximate reciprocals, no sums across lanes), so the choice never changes a result (DESIGN contract 4).
+#ifndef PLS_MATH_SIMD_H
+#define PLS_MATH_SIMD_H
+
+#include <math.h>
+#include <stdint.h>
+
+#define PLS_JOIN_(a, b) a##_##b
+#define PLS_JOIN(a, b) PLS_JOIN_(a, b)
+
+#if defined(PLS_ISA)
+#define PLS_SIMD(name) PLS_JOIN(name, PLS_ISA)
+#endif
+
+/// Instruction set in use: 0 = baseline, 1 = AVX2, 2 = AVX-512. The environment variable PARTICLS_ISA (v2, v3, v4) lowers it, for tests.
+int pls_isa_level(void);
+const char *pls_isa_name(void);
+
+#if defined(PLS_ISA_ONLY_GENERIC)
+#define PLS_SIMD_DECLARE(result, name, ...) result name##_generic(__VA_ARGS__)
+#define PLS_SIMD_SELECT(name) (name##_generic)
+#else
+#define PLS_SIMD_DECLARE(result, name, ...)                                                                                                          \
+    result name##_v2(__VA_ARGS__);                                                                                                                   \
+    result name##_v3(__VA_ARGS__);                                                                                                                   \
+    result name##_v4(__VA_ARGS__)
+#define PLS_SIMD_SELECT(name) (pls_isa_level() == 2 ? name##_v4 : pls_isa_level() == 1 ? name##_v3 : name##_v2)
+#endif
+
+// ---- vectors of the width of the instruction set being compiled for --------------------------------------------------------------------------------
+
+#if defined(PLS_ISA)
+
+#if defined(__AVX512F__)
+#define PLS_W 8
+#elif defined(__AVX2__)
+#define PLS_W 4
+#else
+#define PLS_W 2
+#endif
+
+typedef double pls_vd __attribute__((vector_size(8 * PLS_W)));   ///< PLS_W doubles
+typedef int64_t pls_vi __attribute__((vector_size(8 * PLS_W)));  ///< masks and bit patterns of pls_vd
+typedef float pls_vf __attribute__((vector_size(4 * PLS_W)));    ///< PLS_W floats
+typedef double pls_v4 __attribute__((vector_size(32)));          ///< half a body row: three components and one more
+typedef int64_t pls_v4i __attribute__((vector_size(32)));
+typedef double pls_v2 __attribute__((vector_size(16)));
+
+static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
+static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }
+static inline pls_v4 pls_v4_load(const double *p) { return *(const pls_v4 *)p; }
+static inline void pls_v4_store(double *p, pls_v4 a) { *(pls_v4 *)p = a; }
+static inline pls_vd pls_vd_set(double a) { return (pls_vd){0} + a; }
+static inline pls_v4 pls_v4_set(double a) { return (pls_v4){a, a, a, a}; }
+/// mask ? a : b, mask all ones or all zeros per lane.
+static inline pls_vd pls_vd_pick(pls_vi mask, pls_vd a, pls_vd b) { return (pls_vd)((mask & (pls_vi)a) | (~mask & (pls_vi)b)); }
+static inline pls_v4 pls_v4_pick(pls_v4i mask, pls_v4 a, pls_v4 b) { return (pls_v4)((mask & (pls_v4i)a) | (~mask & (pls_v4i)b)); }
+
+#if defined(__AVX512F__)
+#include <immintrin.h>
+static inline pls_vd pls_vd_sqrt(pls_vd a) { return (pls_vd)_mm512_sqrt_pd((__m512d)a); }
+/// Bit k set where lane k of a is smaller than lane k of b.
+static inline unsigned pls_vd_less(pls_vd a, pls_vd b) { return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ); }
+#elif defined(__AVX2__)
+#include <immintrin.h>
+static inline pls_vd pls_vd_sqrt(pls_vd a) { return (pls_vd)_mm256_sqrt_pd((__m256d)a); }
+static inline unsigned pls_vd_less(pls_vd a, pls_vd b)
+{
+    return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_LT_OQ));
+}
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+static inline pls_vd pls_vd_sqrt(pls_vd a) { return (pls_vd)_mm_sqrt_pd((__m128d)a); }
+static inline unsigned pls_vd_less(pls_vd a, pls_vd b) { return (unsigned)_mm_movemask_pd(_mm_cmplt_pd((__m128d)a, (__m128d)b)); }
+#else
+static inline pls_vd pls_vd_sqrt(pls_vd a)
+{
+    for (int k = 0; k < PLS_W; ++k) a[k] = sqrt(a[k]);
+    return a;
+}
+static inline unsigned pls_vd_less(pls_vd a, pls_vd b)
+{
+    unsigned bits = 0;
+    for (int k = 0; k < PLS_W; ++k) bits |= (unsigned)(a[k] < b[k]) << k;
+    return bits;
+}
+#endif
+
+// Transposes. Rows are eight (or four) doubles in memory, one per contact; columns are vectors over PLS_W contacts.
+
+#if PLS_W == 8
+static inline void pls_transpose8_(pls_vd r[8])
+{
+    pls_vd a[8], b[8];
+    for (int k = 0; k < 4; ++k)
+    {
+        a[2 * k] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        a[2 * k + 1] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int k = 0; k < 2; ++k)
+        for (int c = 0; c < 2; ++c)
+        {
+            b[4 * k + c] = __builtin_shufflevector(a[4 * k + c], a[4 * k + 2 + c], 0, 1, 8, 9, 4, 5, 12, 13);
+            b[4 * k + 2 + c] = __builtin_shufflevector(a[4 * k + c], a[4 * k + 2 + c], 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+    for (int c = 0; c < 4; ++c)
+    {
+        r[c] = __builtin_shufflevector(b[c], b[4 + c], 0, 1, 2, 3, 8, 9, 10, 11);
+        r[4 + c] = __builtin_shufflevector(b[c], b[4 + c], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+}
+#endif
+
+/// 4 x 4 transpose of four rows of four.
+static inline void pls_transpose4_(pls_v4 r[4])
+{
+    pls_v4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+    pls_v4 c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+    r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+/// PLS_W rows of four (in registers) to four columns.
+static inline void pls_columns4(const pls_v4 *row, pls_vd column[4])
+{
+#if PLS_W == 8
+    pls_vd p[4];
+    for (int k = 0; k < 4; ++k) p[k] = __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+    pls_vd a = __builtin_shufflevector(p[0], p[1], 0, 8, 2, 10, 4, 12, 6, 14), b = __builtin_shufflevector(p[0], p[1], 1, 9, 3, 11, 5, 13, 7, 15);
+    pls_vd c = __builtin_shufflevector(p[2], p[3], 0, 8, 2, 10, 4, 12, 6, 14), d = __builtin_shufflevector(p[2], p[3], 1, 9, 3, 11, 5, 13, 7, 15);
+    column[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+    column[1] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+    column[2] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+    column[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+#elif PLS_W == 4
+    pls_v4 t[4] = {row[0], row[1], row[2], row[3]};
+    pls_transpose4_(t);
+    for (int k = 0; k < 4; ++k) column[k] = (pls_vd)t[k];
+#else
+    for (int k = 0; k < 4; ++k) column[k] = (pls_vd){row[0][k], row[1][k]};
+#endif
+}
+
+/// Four columns to PLS_W rows of four, row k stored at `row[k]` for k < count.
+static inline void pls_rows4(const pls_vd column[4], double *const *row, int count)
+{
+#if PLS_W == 8
+    pls_vd a = __builtin_shufflevector(column[0], column[1], 0, 8, 2, 10, 4, 12, 6, 14);
+    pls_vd b = __builtin_shufflevector(column[0], column[1], 1, 9, 3, 11, 5, 13, 7, 15);
+    pls_vd c = __builtin_shufflevector(column[2], column[3], 0, 8, 2, 10, 4, 12, 6, 14);
+    pls_vd d = __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15);
+    pls_vd p[4] = {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13), __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
+                   __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15), __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+    for (int k = 0; k < 4 && k < count; ++k) pls_v4_store(row[k], __builtin_shufflevector(p[k], p[k], 0, 1, 2, 3));
+    for (int k = 4; k < count; ++k) pls_v4_store(row[k], __builtin_shufflevector(p[k - 4], p[k - 4], 4, 5, 6, 7));
+#elif PLS_W == 4
+    pls_v4 t[4] = {(pls_v4)column[0], (pls_v4)column[1], (pls_v4)column[2], (pls_v4)column[3]};
+    pls_transpose4_(t);
+    for (int k = 0; k < count; ++k) pls_v4_store(row[k], t[k]);
+#else
+    for (int k = 0; k < count; ++k) pls_v4_store(row[k], (pls_v4){column[0][k], column[1][k], column[2][k], column[3][k]});
+#endif
+}
+
+/// PLS_W rows of eight, each given as two halves, to eight columns.
+static inline void pls_columns8(const pls_v4 *low, const pls_v4 *high, pls_vd column[8])
+{
+#if PLS_W == 8
+    for (int k = 0; k < 8; ++k) column[k] = __builtin_shufflevector(low[k], high[k], 0, 1, 2, 3, 4, 5, 6, 7);
+    pls_transpose8_(column);
+#else
+    pls_columns4(low, column);
+    pls_columns4(high, column + 4);
+#endif
+}
+
+/// Eight columns to PLS_W rows of eight, row k stored at `row[k]` for k < count.
+static inline void pls_rows8(const pls_vd column[8], double *const *row, int count)
+{
+#if PLS_W == 8
+    pls_vd t[8];
+    for (int k = 0; k < 8; ++k) t[k] = column[k];
+    pls_transpose8_(t);
+    for (int k = 0; k < count; ++k) pls_vd_store(row[k], t[k]);
+#else
+    double *high[PLS_W];
+    for (int k = 0; k < PLS_W; ++k) high[k] = row[k] + 4;
+    pls_rows4(column, row, count);
+    pls_rows4(column + 4, high, count);
+#endif
+}
+
+/// Two floats per lane in the place of a double: what is booked per contact need not be finer.
+static inline pls_vd pls_vd_pack(pls_vd low, pls_vd high)
+{
+    typedef int32_t half __attribute__((vector_size(4 * PLS_W)));
+    typedef uint32_t uhalf __attribute__((vector_size(4 * PLS_W)));
+    uhalf a = (uhalf)(half)__builtin_convertvector(low, pls_vf), b = (uhalf)(half)__builtin_convertvector(high, pls_vf);
+    return (pls_vd)(__builtin_convertvector(a, pls_vi) | (__builtin_convertvector(b, pls_vi) << 32));
+}
+
+#endif // PLS_ISA
+#endif

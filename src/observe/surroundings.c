@@ -1,0 +1,44 @@
+// surroundings.c -- see surroundings.h.
+
+#include "observe/surroundings.h"
+
+#include "step/world.h"
+
+pls_surroundings pls_surroundings_of(const pls_world *world)
+{
+    return (pls_surroundings){.world = world, .bodies = &world->bodies, .domain = &world->domain};
+}
+
+pls_solid pls_surroundings_solid(const pls_surroundings *around, uint32_t row)
+{
+    const pls_bodies *bodies = around->bodies;
+    const pls_shape_instance *shape = &around->world->shape[bodies->kind[row].shape];
+    const pls_body_place *place = &bodies->place[row];
+    const pls_body_orientation *turned = &bodies->orientation[row];
+    const int dimension = around->domain->dimension;
+    const double scale = bodies->scale[row];
+    return (pls_solid){
+        .ops = shape->ops,
+        .values = shape->values,
+        .dimension = dimension,
+        .position = pls_vec(place->x, place->y, place->z),
+        .orientation = {turned->w, turned->x, turned->y, turned->z},
+        .scale = scale,
+        .radius = place->radius,
+        .volume = shape->properties.volume * scale * scale * (dimension == 3 ? scale : 1),
+    };
+}
+
+double pls_surroundings_potential(const pls_surroundings *around, uint32_t row)
+{
+    const pls_world *world = around->world;
+    const pls_body_place *place = &around->bodies->place[row];
+    const pls_vec3 position = pls_vec(place->x, place->y, place->z);
+    double energy = 0;
+    for (size_t k = 0; k < world->force_count; ++k)
+    {
+        const pls_force_instance *force = &world->force[k];
+        if (force->ops->potential) energy += force->ops->potential(force->context, world->time, position, around->bodies->mass[row].mass);
+    }
+    return energy;
+}

@@ -1,0 +1,27 @@
+// generators.h -- where the bodies of an entry are: lattice, hexagonal packing, random packing, table, list.
+#ifndef PLS_SCENE_GENERATORS_H
+#define PLS_SCENE_GENERATORS_H
+
+#include "scene/scene_data.h"
+
+/// Bodies of one entry in order. Zero-initialise; `pls_points_free` releases. Arrays may be null where every body has the entry's value.
+typedef struct pls_points
+{
+    size_t count;
+    pls_vec3 *position;         ///< [m]
+    double *scale;              ///< multiplies the shape's lengths
+    pls_vec3 *velocity;         ///< [m/s]
+    pls_vec3 *angular_velocity; ///< [rad/s]
+    pls_quat *orientation;
+} pls_points;
+
+/// The bodies of an entry: those of `place`, or the one at `position`.
+pls_status pls_points_make(const pls_scene *scene, const pls_scene_body *body, pls_points *points);
+void pls_points_free(pls_points *points);
+
+/// random_pack.c: `random` is the resolved section, `radius` the bounding radius of the shape at scale 1.
+pls_status pls_points_random(const pls_scene *scene, const pls_node *random, double radius, double scale, pls_points *points);
+/// csv_points.c
+pls_status pls_points_csv(const pls_scene *scene, const pls_node *csv, double radius, double scale, pls_points *points);
+
+#endif

@@ -1,0 +1,265 @@
+// resolve_scene.c -- the order in which a scene is resolved, and the maps whose keys depend on their contents: vars, shapes, contact laws, states.
+//
+// The version, the dimension, vars, plugins and the names of states come first, because everything else is read with them.
+
+#include "scene/resolve.h"
+#include "scene/scene_data.h"
+
+#include <stdio.h>
+#include <string.h>
+
+pls_status pls_scene_symbols(const pls_scene *scene, unsigned uses, const char *own, const char **names, pls_symbols *symbols)
+{
+    size_t count = 0;
+    if (uses & PLS_USES_TIME) names[count++] = "t";
+    if (uses & PLS_USES_PLACE) names[count++] = "x", names[count++] = "y", names[count++] = "z";
+    if (uses & PLS_USES_VELOCITY) names[count++] = "vx", names[count++] = "vy", names[count++] = "vz";
+    if (uses & PLS_USES_RADIUS) names[count++] = "r";
+    if (uses & PLS_USES_MASS) names[count++] = "m";
+    if (uses & PLS_USES_OWN) names[count++] = "s";
+    if (uses & PLS_USES_OWN && own) names[count++] = own;
+    for (size_t k = 0; uses & PLS_USES_STATES && k < scene->state_count; ++k)
+    {
+        if (!scene->state_names[k]) continue;
+        if (count == PLS_EXPRESSION_VARIABLES)
+            return pls_fail(PLS_LIMIT_EXCEEDED, "%s: more than %d states that expressions can name", scene->source.name,
+                            PLS_EXPRESSION_VARIABLES - 12);
+        names[count++] = scene->state_names[k];
+    }
+    *symbols = (pls_symbols){names, count, scene->vars, scene->var_count};
+    return PLS_OK;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------------
+// what comes first
+
+static const pls_key *find_key(const char *section, const char *name)
+{
+    size_t count;
+    const pls_key *keys = pls_schema_keys(section, &count);
+    while (strcmp(keys->name, name) != 0) ++keys;
+    return keys;
+}
+
+static pls_status resolve_head(pls_resolver *r, pls_node *root)
+{
+    if (root->kind != PLS_NODE_MAP)
+        return pls_node_fail(root, "a scene begins with  particls: 1", "a scene must be a map (key: value), not %s",
+                             pls_node_describe(root));
+    pls_node *version = pls_node_get(root, "particls");
+    for (size_t k = 0; !version && k < root->count; ++k)
+    {
+        static const char *const wanted[] = {"particls"};
+        if (pls_nearest_word(root->key[k]->text, wanted, 1))
+            return pls_node_fail(root->key[k], "did you mean 'particls'?", "unknown key '%.80s' in the scene", root->key[k]->text);
+    }
+    if (!version) return pls_node_fail(root, "a scene begins with  particls: 1", "missing key 'particls' in the scene: the version of the scene language");
+    if (version->kind != PLS_NODE_SCALAR || strcmp(version->text, "1") != 0)
+        return pls_node_fail(version, "write  particls: 1", "this program reads version 1 of the scene language, not %s",
+                             version->kind == PLS_NODE_SCALAR ? version->text : pls_node_describe(version));
+    r->scene->dimension = 3;
+    pls_node *dimension = pls_node_get(root, "dimension");
+    if (!dimension) return PLS_OK;
+    PLS_TRY(pls_resolve_key(r, find_key("scene", "dimension"), dimension, "the scene"));
+    r->scene->dimension = (int)dimension->number;
+    return PLS_OK;
+}
+
+static pls_status resolve_vars(pls_resolver *r, pls_node *vars)
+{
+    if (!vars || pls_node_is_null(vars)) return PLS_OK;
+    if (vars->kind != PLS_NODE_MAP)
+        return pls_node_fail(vars, "for example  vars: {kn: 20, ks: \"kn/2\"}", "'vars' must be a map of names, not %s",
+                             pls_node_describe(vars));
+    pls_scene *scene = r->scene;
+    PLS_TRY(pls_arena_allocate(&scene->arena, &scene->vars, vars->count, sizeof *scene->vars, "the scene's vars"));
+    for (size_t k = 0; k < vars->count; ++k)
+    {
+        const pls_node *name = vars->key[k];
+        if (!pls_expression_is_name(name->text) || strlen(name->text) >= PLS_NAME_SIZE)
+            return pls_node_fail(name, "letters, digits and '_', beginning with a letter; at most 63 characters",
+                                 "'%.80s' cannot be the name of a variable", name->text);
+        if (pls_expression_reserved(name->text))
+            return pls_node_fail(name, "choose another name", "'%s' has a meaning of its own in expressions and cannot be a variable",
+                                 name->text);
+        pls_key key = {.section = "vars",
+                       .name = name->text,
+                       .type = PLS_KEY_NUMBER,
+                       .unit = "",
+                       .minimum = -INFINITY,
+                       .maximum = INFINITY,
+                       .meaning = "a number or an expression over earlier vars"};
+        PLS_TRY(pls_resolve_key(r, &key, vars->child[k], "'vars'"));
+        scene->vars[scene->var_count++] = (pls_constant){name->text, vars->child[k]->number};
+    }
+    return PLS_OK;
+}
+
+static pls_status resolve_plugins(pls_resolver *r, pls_node *plugins)
+{
+    if (!plugins) return PLS_OK;
+    PLS_TRY(pls_resolve_paths(r, find_key("scene", "plugins"), plugins, "the scene"));
+    for (size_t k = 0; k < plugins->count; ++k) PLS_TRY(pls_scene_load_plugin(r->scene, plugins->child[k]));
+    return PLS_OK;
+}
+
+/// Name of a states entry as written, or made from `of` for the short form. Null when it has none or is no text: resolving complains later.
+static pls_status state_name(pls_resolver *r, const pls_node *entry, const pls_node **at, const char **name)
+{
+    const pls_node *given = pls_node_get(entry, "name"), *of = pls_node_get(entry, "of");
+    *name = NULL;
+    *at = given;
+    if (given && given->kind == PLS_NODE_SCALAR) *name = given->text;
+    if (given || !pls_node_get(entry, "radius") || !of || of->kind != PLS_NODE_SCALAR) return PLS_OK;
+    *at = of;
+    size_t size = strcspn(of->text, "[");
+    const char *index = of->text + size;
+    int digits = (int)strspn(index + (*index != 0), "0123456789");
+    PLS_TRY(pls_arena_print(&r->scene->arena, name, "%.*s%s%.*s_radius", (int)size, of->text, digits ? "_" : "", digits,
+                            index + (*index != 0)));
+    for (char *c = (char *)(uintptr_t)*name; *c; ++c)
+    {
+        if (*c == '-' || *c == '.') *c = '_';
+    }
+    return PLS_OK;
+}
+
+static pls_status check_state_name(const pls_scene *scene, const pls_node *at, const char *name)
+{
+    if (!pls_expression_is_name(name) || strlen(name) >= PLS_NAME_SIZE - 11)
+        return pls_node_fail(at, "letters, digits and '_', beginning with a letter; at most 52 characters",
+                             "'%.80s' cannot be the name of a state", name);
+    if (pls_expression_reserved(name))
+        return pls_node_fail(at, "choose another name", "'%s' has a meaning of its own in expressions and cannot be a state", name);
+    for (size_t k = 0; k < scene->var_count; ++k)
+    {
+        if (strcmp(scene->vars[k].name, name) == 0)
+            return pls_node_fail(at, "choose another name", "there is a variable '%s' in 'vars' already", name);
+    }
+    for (size_t k = 0; k < scene->state_count; ++k)
+    {
+        if (scene->state_names[k] && strcmp(scene->state_names[k], name) == 0)
+            return pls_node_fail(at, "give one of them another name", "there is a state '%s' already", name);
+    }
+    return PLS_OK;
+}
+
+static pls_status collect_state_names(pls_resolver *r, const pls_node *states)
+{
+    if (!states || states->kind != PLS_NODE_LIST) return PLS_OK;
+    pls_scene *scene = r->scene;
+    PLS_TRY(pls_arena_allocate(&scene->arena, &scene->state_names, states->count, sizeof *scene->state_names, "names of states"));
+    for (size_t k = 0; k < states->count; ++k)
+    {
+        const pls_node *at, *each = pls_node_get(states->child[k], "each");
+        const char *name;
+        PLS_TRY(state_name(r, states->child[k], &at, &name));
+        if (name) PLS_TRY(check_state_name(scene, at, name));
+        bool all = each && each->kind == PLS_NODE_SCALAR && strcmp(each->text, "true") == 0;
+        scene->state_names[scene->state_count++] = all ? NULL : name;
+    }
+    return PLS_OK;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------------
+// maps whose keys depend on their contents
+
+static pls_status parameter_keys(pls_resolver *r, const pls_parameter *table, unsigned uses, pls_key *keys, size_t *count)
+{
+    for (; table && table->name && *count < PLS_MAX_KEYS; ++table)
+    {
+        char *initial;
+        PLS_TRY(pls_arena_allocate(&r->scene->arena, &initial, 32, 1, "a default"));
+        keys[(*count)++] = pls_schema_parameter(table, uses, initial);
+    }
+    return PLS_OK;
+}
+
+/// The entry of a registry for a name in the scene.
+static pls_status find_ops(const pls_registry *registry, const pls_node *name, const void **ops)
+{
+    *ops = pls_registry_find(registry, name->text);
+    if (*ops) return PLS_OK;
+    const char *candidates[256];
+    size_t count = 0;
+    for (; count < registry->count && count < 256; ++count) candidates[count] = registry->entry[count].name;
+    char hint[600];
+    pls_scene_hint(hint, sizeof hint, name->text, "there are", candidates, count);
+    return pls_node_fail(name, hint, "unknown %s '%.80s'", registry->what, name->text);
+}
+
+static pls_status resolve_shape(pls_resolver *r, const pls_node *name, pls_node *node)
+{
+    const char *label;
+    PLS_TRY(pls_resolve_name(name, "shape"));
+    PLS_TRY(pls_arena_print(&r->scene->arena, &label, "shape '%s'", name->text));
+    if (node->kind != PLS_NODE_MAP || node->count != 1)
+        return pls_node_fail(node, "for example  {sphere: {radius: 0.1}}", "%s must be a map with one key, the kind of shape", label);
+    const void *found;
+    PLS_TRY(find_ops(&r->scene->shape_ops, node->key[0], &found));
+    const pls_shape_ops *ops = found;
+    if (r->scene->dimension == 2 ? !ops->in_2d : !ops->in_3d)
+        return pls_node_fail(node->key[0], NULL, "%s: a %s cannot be used in %dD", label, ops->name, r->scene->dimension);
+    pls_key keys[PLS_MAX_KEYS];
+    size_t count = 0;
+    PLS_TRY(parameter_keys(r, ops->parameters, 0, keys, &count));
+    return pls_resolve_map(r, node->child[0], keys, count, label);
+}
+
+pls_status pls_resolve_shapes(pls_resolver *r, const pls_key *key, pls_node *map, const char *label)
+{
+    if (map->kind != PLS_NODE_MAP || map->count == 0)
+        return pls_node_fail(map, "for example  shapes: {ball: {sphere: {radius: 0.1}}}", "'%s' in %s must be a map of names", key->name,
+                             label);
+    for (size_t k = 0; k < map->count; ++k) PLS_TRY(resolve_shape(r, map->key[k], map->child[k]));
+    return PLS_OK;
+}
+
+pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *label)
+{
+    size_t count;
+    const pls_key *fixed = pls_schema_keys("contact", &count);
+    pls_key keys[PLS_MAX_KEYS];
+    memcpy(keys, fixed, count * sizeof *keys);
+    const pls_node *law = pls_node_get(entry, "law");
+    const char *inner = label;
+    if (law && law->kind == PLS_NODE_SCALAR)
+    {
+        const void *found;
+        PLS_TRY(find_ops(&r->scene->law_ops, law, &found));
+        const pls_law_ops *ops = found;
+        PLS_TRY(parameter_keys(r, ops->parameters, PLS_USES_TIME | PLS_USES_STATES, keys, &count));
+        PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "%s (law %s)", label, ops->name));
+        return pls_resolve_map(r, entry, keys, count, inner);
+    }
+    if (entry->kind == PLS_NODE_MAP && !law) return pls_node_fail(entry, "law: name of a contact law", "missing key 'law' in %s", label);
+    return pls_resolve_map(r, entry, keys, count, label);
+}
+
+pls_status pls_resolve_state(pls_resolver *r, pls_node *entry, const char *label)
+{
+    const pls_node *each = pls_node_get(entry, "each"), *at;
+    r->own_name = NULL;
+    bool all = each && each->kind == PLS_NODE_SCALAR && strcmp(each->text, "true") == 0;
+    if (all) PLS_TRY(state_name(r, entry, &at, &r->own_name));
+    size_t count;
+    const pls_key *keys = pls_schema_keys("state", &count);
+    pls_status status = pls_resolve_map(r, entry, keys, count, label);
+    r->own_name = NULL;
+    return status;
+}
+
+pls_status pls_scene_resolve(pls_scene *scene)
+{
+    pls_resolver r = {.scene = scene};
+    pls_node *root = scene->root;
+    PLS_TRY(resolve_head(&r, root));
+    PLS_TRY(resolve_vars(&r, pls_node_get(root, "vars")));
+    PLS_TRY(resolve_plugins(&r, pls_node_get(root, "plugins")));
+    PLS_TRY(collect_state_names(&r, pls_node_get(root, "states")));
+    size_t count;
+    const pls_key *keys = pls_schema_keys("scene", &count);
+    PLS_TRY(pls_resolve_map(&r, root, keys, count, "the scene"));
+    if (scene->dimension == 2) scene->thickness = pls_node_get(root, "thickness")->number;
+    return PLS_OK;
+}

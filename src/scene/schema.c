@@ -1,0 +1,299 @@
+// schema.c -- the table.
+//
+// Rows of a section lie together, in the order in which scene.used.yaml and the reference page list them. Add a key: one row here, and one line
+// where parse_*.c or build.c uses it.
+
+#include "scene/schema.h"
+
+#include "base/text.h"
+
+#include <string.h>
+
+static const pls_section sections[] = {
+    {"scene", "top level", "The keys of a scene file."},
+    {"material", "materials.NAME",
+     "What bodies are made of. Which values are needed depends on the contact laws; bodies with mass need a density."},
+    {"domain", "domain", "The periodic box. Without it space has no bounds."},
+    {"body", "bodies[k]",
+     "A body, or a group of bodies that are alike. Its name is also the name of the group, for observers, forces and states. "
+     "An unbounded shape (a plane) without `motion` is fixed by itself."},
+    {"place", "bodies[k].place", "Where the bodies of a group are: exactly one of these."},
+    {"lattice", "bodies[k].place.lattice", "A rectangular lattice. Bodies are numbered with x fastest, then y, then z."},
+    {"hex_pack", "bodies[k].place.hex_pack",
+     "Hexagonal close packing; in 2D the triangular lattice. With R = spacing / 2 the body (i, j, k) lies at corner + R + R (2 i + (j + k) "
+     "mod 2, "
+     "sqrt(3) (j + (k mod 2) / 3), 2 sqrt(6) / 3 k); in 2D at corner + R + R (2 i + j mod 2, sqrt(3) j). Numbered with i fastest, then j, "
+     "then k."},
+    {"random", "bodies[k].place.random",
+     "A loose random packing: bodies are put one after the other, the large ones first, at random places of the box where they touch "
+     "nothing of this entry. "
+     "The result depends on nothing but these values. Packings denser than about 0.35 by volume (2D: 0.5 by area) are out of reach."},
+    {"radius", "bodies[k].place.random.radius",
+     "Distribution of radii by number: exactly one of these. Radii are bounding radii of the scaled shape."},
+    {"lognormal", "bodies[k].place.random.radius.lognormal", "A log-normal distribution, cut at both ends."},
+    {"power", "bodies[k].place.random.radius.power", "Density proportional to r^exponent between two radii."},
+    {"box", "... box", "A box with edges along the axes."},
+    {"csv", "bodies[k].place.csv",
+     "Bodies from a table. Its first line names the columns: x, y (z in 3D) are needed; radius or scale, vx, vy, vz, wx, wy, wz (2D: wz) "
+     "and qw, qx, qy, qz may "
+     "follow, in any order."},
+    {"motion", "bodies[k].motion",
+     "Prescribed motion. Axes not mentioned stand still; `free` in place of a number leaves that axis to the forces."},
+    {"turn", "... orientation", "A rotation about an axis."},
+    {"contact", "contact[k]",
+     "The contact law between two materials. The parameters of the law stand beside `law`. A pair that is named wins over `all`."},
+    {"gravity", "forces[k]", "Uniform gravity."},
+    {"field_force", "forces[k]", "A field of forces given by expressions."},
+    {"field", "forces[k].field",
+     "Force or acceleration as a function of place, time and the body's own motion. Exactly one of `force` and `acceleration`."},
+    {"state", "states[k]",
+     "A further ordinary differential equation, advanced with the bodies by the midpoint rule. Its name may be used in expressions of "
+     "materials, contact laws and "
+     "other states."},
+    {"state_radius", "states[k].radius", "Short form for a radius that changes: target `radius`, starting from the body's own."},
+    {"time", "time", "Duration and time step."},
+    {"neighbours", "neighbours", "The neighbour search. Never changes results, only speed."},
+    {"guard", "guard", "When to stop a run that has gone wrong."},
+    {"observe_collection", "observe[k]", "Averages over a group of bodies, a line per look in series/NAME.csv."},
+    {"observe_particle", "observe[k]", "Quantities of each body of an entry, a line per look in series/NAME.csv."},
+    {"observe_frames", "observe[k]", "Pictures of all bodies for ParaView in frames/."},
+    {"observe_checkpoint", "observe[k]", "Checkpoints from which a run goes on; the last two are kept."},
+    {"checkpoint", "observe[k].checkpoint", "When checkpoints are written: exactly one of these."},
+    {"volume", "observe[k].volume", "The volume that averages refer to."},
+};
+
+#define TIMELY   (PLS_USES_TIME | PLS_USES_STATES)
+#define FIELD    (PLS_USES_TIME | PLS_USES_PLACE | PLS_USES_VELOCITY | PLS_USES_RADIUS | PLS_USES_MASS)
+#define RATE     (PLS_USES_TIME | PLS_USES_PLACE | PLS_USES_VELOCITY | PLS_USES_RADIUS | PLS_USES_OWN | PLS_USES_STATES)
+#define ANY      -INFINITY, INFINITY
+#define POSITIVE 0.0, INFINITY
+#define REQUIRED PLS_KEY_REQUIRED
+#define OPEN     PLS_KEY_OPEN_MINIMUM
+
+#define SCHEDULE(section)                                                                                                           \
+    {section, "every", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "s", NULL, POSITIVE, "time between looks; give this or `every_steps`"}, \
+        {section, "every_steps", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 1, 1e15, "steps between looks"},                      \
+        {section, "start", PLS_KEY_NUMBER, 0, 0, NULL, NULL, "s", "0", POSITIVE, "first look"},                                     \
+        {section, "end", PLS_KEY_NUMBER, PLS_KEY_INFINITE, 0, NULL, NULL, "s", "inf", POSITIVE, "no looks after this time"},        \
+    {                                                                                                                               \
+        section, "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY,                                                             \
+            "name of its file; by default what it observes, with a number if taken"                                                 \
+    }
+
+static const pls_key keys[] = {
+    // section, name, type, flags, uses, words, sub, unit, initial, minimum, maximum, meaning
+    {"scene", "particls", PLS_KEY_INTEGER, REQUIRED, 0, NULL, NULL, "", NULL, 1, 1, "version of the scene language"},
+    {"scene", "title", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "", ANY, "one line for people"},
+    {"scene", "dimension", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", "3", 2, 3, "2: the x-y plane"},
+    {"scene", "thickness", PLS_KEY_NUMBER, OPEN | PLS_KEY_ONLY_2D, 0, NULL, NULL, "m", "1", POSITIVE, "depth of bodies in z"},
+    {"scene", "vars", PLS_KEY_VARIABLES, 0, 0, NULL, NULL, "", NULL, ANY,
+     "names for numbers, usable in every expression; later ones may use earlier ones"},
+    {"scene", "plugins", PLS_KEY_PATHS, PLS_KEY_MAY_BE_EMPTY, 0, NULL, NULL, "", NULL, ANY, "shared objects with further shapes and laws"},
+    {"scene", "materials", PLS_KEY_NAMED, REQUIRED, 0, NULL, "material", "", NULL, ANY, "materials by name"},
+    {"scene", "shapes", PLS_KEY_SHAPES, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "shapes by name"},
+    {"scene", "domain", PLS_KEY_SECTION, 0, 0, NULL, "domain", "", NULL, ANY, "periodic box"},
+    {"scene", "bodies", PLS_KEY_LIST, REQUIRED, 0, NULL, "body", "", NULL, ANY, "bodies and groups of bodies"},
+    {"scene", "contact", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "contact", "", NULL, ANY, "contact laws"},
+    {"scene", "forces", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "gravity|field_force", "", NULL, ANY, "body forces"},
+    {"scene", "states", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "state", "", NULL, ANY, "further differential equations"},
+    {"scene", "time", PLS_KEY_SECTION, REQUIRED, 0, NULL, "time", "", NULL, ANY, "duration and time step"},
+    {"scene", "neighbours", PLS_KEY_SECTION, 0, 0, NULL, "neighbours", "", "", ANY, "neighbour search"},
+    {"scene", "guard", PLS_KEY_SECTION, 0, 0, NULL, "guard", "", "", ANY, "stops a run that has gone wrong"},
+    {"scene", "observe", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL,
+     "observe_collection|observe_particle|observe_frames|observe_checkpoint", "", NULL, ANY, "what is measured and when"},
+
+    {"material", "density", PLS_KEY_NUMBER, OPEN, TIMELY, NULL, NULL, "kg/m^3", NULL, POSITIVE, "mass per volume, in 2D too"},
+    {"material", "young_modulus", PLS_KEY_NUMBER, OPEN, TIMELY, NULL, NULL, "Pa", NULL, POSITIVE, "Young's modulus E"},
+    {"material", "poisson_ratio", PLS_KEY_NUMBER, OPEN, TIMELY, NULL, NULL, "", NULL, -1, 0.5, "Poisson's ratio nu"},
+
+    {"domain", "periodic", PLS_KEY_FLAGS, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "whether space repeats along each axis"},
+    {"domain", "lower", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m", NULL, ANY,
+     "lower corner of the box at t = 0; only periodic axes matter"},
+    {"domain", "upper", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m", NULL, ANY, "upper corner of the box at t = 0"},
+    {"domain", "stretch_rate", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "1/s", "0", ANY,
+     "relative rate of change of each edge: L(t) = L(0) (1 + rate t)"},
+
+    {"body", "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY, "name of the entry and its group; body_1, body_2, ... by default"},
+    {"body", "shape", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a shape"},
+    {"body", "material", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a material"},
+    {"body", "place", PLS_KEY_CHOICE, 0, 0, NULL, "place", "", NULL, ANY, "places of many bodies; give this or `position`"},
+    {"body", "position", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", NULL, ANY, "centre of mass; of a plane, a point on it"},
+    {"body", "orientation", PLS_KEY_ORIENTATION, 0, 0, NULL, "turn", "", NULL, ANY,
+     "grain frame to world: quaternion [w, x, y, z] or {axis, angle}; in 2D an angle [rad]"},
+    {"body", "normal", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "", NULL, ANY,
+     "outward normal of a plane: the shape's z axis (2D: y axis) is turned onto it"},
+    {"body", "velocity", PLS_KEY_VECTOR, 0, PLS_USES_PLACE, NULL, NULL, "m/s", NULL, ANY,
+     "at the start; may depend on x, y, z of the body"},
+    {"body", "angular_velocity", PLS_KEY_SPIN, 0, PLS_USES_PLACE, NULL, NULL, "rad/s", NULL, ANY,
+     "at the start; may depend on x, y, z of the body"},
+    {"body", "scale", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "1", POSITIVE, "multiplies the lengths of the shape"},
+    {"body", "mass", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "kg", NULL, POSITIVE, "in place of density times volume"},
+    {"body", "inertia", PLS_KEY_SPIN, OPEN, 0, NULL, NULL, "kg m^2", NULL, POSITIVE, "principal moments in place of the shape's"},
+    {"body", "fixed", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", NULL, ANY, "never moves"},
+    {"body", "lock", PLS_KEY_WORDS, 0, 0, "x|y|z|rx|ry|rz", NULL, "", NULL, ANY, "axes along and about which the body does not move"},
+    {"body", "motion", PLS_KEY_SECTION, 0, 0, NULL, "motion", "", NULL, ANY, "prescribed motion"},
+
+    {"place", "lattice", PLS_KEY_SECTION, 0, 0, NULL, "lattice", "", NULL, ANY, "rectangular lattice"},
+    {"place", "hex_pack", PLS_KEY_SECTION, 0, 0, NULL, "hex_pack", "", NULL, ANY, "hexagonal packing"},
+    {"place", "random", PLS_KEY_SECTION, 0, 0, NULL, "random", "", NULL, ANY, "loose random packing"},
+    {"place", "csv", PLS_KEY_SECTION, 0, 0, NULL, "csv", "", NULL, ANY, "from a table"},
+    {"place", "points", PLS_KEY_POINTS, 0, 0, NULL, NULL, "m", NULL, ANY, "list of centres"},
+
+    {"lattice", "count", PLS_KEY_COUNTS, REQUIRED, 0, NULL, NULL, "", NULL, 1, 1e9, "bodies along each axis"},
+    {"lattice", "spacing", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m", NULL, POSITIVE,
+     "distance of neighbours; twice the bounding radius by default"},
+    {"lattice", "corner", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", "0", ANY, "lower corner; the first centre lies half a spacing inside"},
+
+    {"hex_pack", "count", PLS_KEY_COUNTS, REQUIRED, 0, NULL, NULL, "", NULL, 1, 1e9, "bodies in a row, rows in a layer, layers"},
+    {"hex_pack", "corner", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", "0", ANY, "lower corner of the packing"},
+    {"hex_pack", "spacing", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m", NULL, POSITIVE,
+     "distance of neighbours; twice the bounding radius by default"},
+
+    {"random", "count", PLS_KEY_INTEGER, REQUIRED, 0, NULL, NULL, "", NULL, 1, 1e9, "bodies"},
+    {"random", "box", PLS_KEY_SECTION, REQUIRED, 0, NULL, "box", "", NULL, ANY, "holds every body as a whole"},
+    {"random", "radius", PLS_KEY_NUMBER, OPEN, 0, NULL, "radius", "m", NULL, POSITIVE,
+     "one radius or a distribution; that of the shape by default"},
+    {"random", "seed", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", "1", 0, 9007199254740992.0, "another seed, another packing"},
+    {"random", "gap", PLS_KEY_NUMBER, 0, 0, NULL, NULL, "m", "0", POSITIVE, "least distance of surfaces"},
+    {"random", "attempts", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", "10000", 1, 1e9, "places tried for a body before giving up"},
+
+    {"radius", "uniform", PLS_KEY_RANGE, OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "[smallest, largest], equally likely between"},
+    {"radius", "lognormal", PLS_KEY_SECTION, 0, 0, NULL, "lognormal", "", NULL, ANY, "log-normal"},
+    {"radius", "power", PLS_KEY_SECTION, 0, 0, NULL, "power", "", NULL, ANY, "power law"},
+    {"radius", "table", PLS_KEY_PAIRS, 0, 0, NULL, NULL, "m", NULL, POSITIVE, "list of [radius, fraction by number]"},
+    {"lognormal", "median", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "half of the radii are smaller"},
+    {"lognormal", "sigma", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "", NULL, 0, 10, "standard deviation of ln r"},
+    {"lognormal", "min", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "smaller radii are drawn again"},
+    {"lognormal", "max", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "larger radii are drawn again"},
+    {"power", "min", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "smallest radius"},
+    {"power", "max", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "largest radius"},
+    {"power", "exponent", PLS_KEY_NUMBER, REQUIRED, 0, NULL, NULL, "", NULL, -20, 20, "of the density over r"},
+    {"box", "lower", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m", NULL, ANY, "lower corner"},
+    {"box", "upper", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m", NULL, ANY, "upper corner"},
+    {"csv", "file", PLS_KEY_PATH, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "the table"},
+
+    {"motion", "velocity", PLS_KEY_VECTOR, 0, PLS_USES_TIME, "free", NULL, "m/s", NULL, ANY, "velocity of the centre"},
+    {"motion", "angular_velocity", PLS_KEY_SPIN, 0, PLS_USES_TIME, "free", NULL, "rad/s", NULL, ANY, "angular velocity"},
+    {"motion", "about", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", NULL, ANY, "the rotation also carries the body about this point"},
+    {"motion", "displacement", PLS_KEY_VECTOR, 0, PLS_USES_TIME, "free", NULL, "m", NULL, ANY,
+     "path of the centre relative to the start, in place of `velocity`"},
+    {"turn", "axis", PLS_KEY_VECTOR3, 0, 0, NULL, NULL, "", NULL, ANY, "axis of the rotation, of any length; z in 2D"},
+    {"turn", "angle", PLS_KEY_NUMBER, REQUIRED, 0, NULL, NULL, "rad", NULL, ANY, "angle"},
+
+    {"contact", "between", PLS_KEY_NAMES, REQUIRED, 0, "all", NULL, "", NULL, ANY, "[material, material], or `all` for every pair"},
+    {"contact", "law", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a contact law"},
+
+    {"gravity", "gravity", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m/s^2", NULL, ANY, "acceleration of every free body"},
+    {"field_force", "field", PLS_KEY_SECTION, REQUIRED, 0, NULL, "field", "", NULL, ANY, "a field of forces"},
+    {"field", "force", PLS_KEY_VECTOR, 0, FIELD, NULL, NULL, "N", NULL, ANY, "force on a body"},
+    {"field", "acceleration", PLS_KEY_VECTOR, 0, FIELD, NULL, NULL, "m/s^2", NULL, ANY, "force per mass"},
+    {"field", "where", PLS_KEY_CONDITION, 0, FIELD, NULL, NULL, "", NULL, ANY,
+     "the field acts only where this is true, for example \"z > 0.5 && t < 1\""},
+    {"field", "bodies", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "all", ANY, "name of a body entry, or all"},
+
+    {"state", "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY,
+     "name for expressions; required unless `radius` is given (then ENTRY_radius)"},
+    {"state", "of", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "world", ANY, "its body: name of an entry, one of many as \"pack[12]\"; or world"},
+    {"state", "index", PLS_KEY_INTEGER, 0, 0, "middle", NULL, "", NULL, 0, 4e9, "which body of an entry that holds many"},
+    {"state", "each", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "false", ANY,
+     "one state for every body of the entry, named NAME_0, NAME_1, ..."},
+    {"state", "initial", PLS_KEY_NUMBER, 0, 0, NULL, NULL, "", NULL, ANY, "value at the start; the body's own for targets, else 0"},
+    {"state", "rate", PLS_KEY_NUMBER, 0, RATE, NULL, NULL, "", NULL, ANY,
+     "ds/dt; may use t, s, x y z, vx vy vz, r of its body and other states"},
+    {"state", "target", PLS_KEY_WORD, 0, 0, "none|radius|scale", NULL, "", "none", ANY, "what of the body follows the state"},
+    {"state", "keep", PLS_KEY_WORD, 0, 0, "mass|density", NULL, "", "mass", ANY, "what stays when the size changes"},
+    {"state", "radius", PLS_KEY_SECTION, 0, 0, NULL, "state_radius", "", NULL, ANY, "short form for a changing radius"},
+    {"state_radius", "rate", PLS_KEY_NUMBER, REQUIRED, RATE, NULL, NULL, "m/s", NULL, ANY, "dr/dt"},
+    {"state_radius", "initial", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "radius at the start"},
+
+    {"time", "end", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "s", NULL, POSITIVE, "the run ends here"},
+    {"time", "dt", PLS_KEY_NUMBER, OPEN, 0, "auto", NULL, "s", "auto", POSITIVE, "time step; auto takes the stable step times `safety`"},
+    {"time", "safety", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "0.5", 0, 1, "fraction of the stable step"},
+    {"time", "allow_unstable", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "false", ANY, "accept a step above the estimated stable one"},
+    {"time", "coordination", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 1, 1000,
+     "contacts per body assumed by the estimate before they exist; 12, in 2D 6 by default"},
+
+    {"neighbours", "skin", PLS_KEY_NUMBER, 0, 0, "auto", NULL, "m", "auto", POSITIVE, "Verlet skin; auto tunes itself"},
+    {"neighbours", "reorder", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "true", ANY, "keep bodies in memory along a space-filling curve"},
+
+    {"guard", "max_overlap", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "1", POSITIVE,
+     "stop when an overlap exceeds this fraction of the smaller radius"},
+
+    {"observe_collection", "collection", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a body entry, or all"},
+    {"observe_collection", "quantities", PLS_KEY_WORDS, 0, 0, "stress|tangent|fabric|coordination|energy|momentum|porosity", NULL, "",
+     "stress coordination energy", ANY, "what is measured"},
+    {"observe_collection", "volume", PLS_KEY_NUMBER, OPEN, 0, "bounding_box|periodic", "volume", "m^3", "bounding_box", POSITIVE,
+     "volume of the average; {box: ...} also picks the bodies and contacts inside"},
+    {"observe_collection", "walls", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "true", ANY,
+     "count contacts with unbounded bodies in stress, tangent and fabric"},
+    SCHEDULE("observe_collection"),
+    {"observe_particle", "particle", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY,
+     "name of a body entry; each of its bodies has its columns"},
+    {"observe_particle", "quantities", PLS_KEY_NAMES, 0, 0, NULL, NULL, "", "position velocity force", ANY, "body fields"},
+    SCHEDULE("observe_particle"),
+    {"observe_frames", "frames", PLS_KEY_WORD, REQUIRED, 0, "vtk", NULL, "", NULL, ANY, "file format"},
+    {"observe_frames", "fields", PLS_KEY_NAMES, PLS_KEY_MAY_BE_EMPTY, 0, NULL, NULL, "", NULL, ANY, "body fields besides the usual ones"},
+    {"observe_frames", "contacts", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "false", ANY, "write contacts as lines as well"},
+    SCHEDULE("observe_frames"),
+    {"observe_checkpoint", "checkpoint", PLS_KEY_SECTION, REQUIRED, 0, NULL, "checkpoint", "", NULL, ANY, "when"},
+    {"checkpoint", "every", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "s", NULL, POSITIVE, "time between checkpoints"},
+    {"checkpoint", "every_steps", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 1, 1e15, "steps between checkpoints"},
+    {"volume", "box", PLS_KEY_SECTION, REQUIRED, 0, NULL, "box", "", NULL, ANY, "a box"},
+};
+
+const pls_section *pls_schema_sections(size_t *count)
+{
+    *count = sizeof sections / sizeof *sections;
+    return sections;
+}
+
+const pls_key *pls_schema_keys(const char *section, size_t *count)
+{
+    size_t all = sizeof keys / sizeof *keys, first = 0;
+    while (first < all && strcmp(keys[first].section, section) != 0) ++first;
+    size_t end = first;
+    while (end < all && strcmp(keys[end].section, section) == 0) ++end;
+    *count = end - first;
+    return &keys[first];
+}
+
+pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char initial[32])
+{
+    bool required = isnan(parameter->initial);
+    return (pls_key){.section = "",
+                     .name = parameter->name,
+                     .type = parameter->components == 3 ? PLS_KEY_VECTOR3 : PLS_KEY_NUMBER,
+                     .flags = (required ? PLS_KEY_REQUIRED : 0U) | (parameter->open_minimum ? PLS_KEY_OPEN_MINIMUM : 0U),
+                     .uses = uses,
+                     .unit = parameter->unit ? parameter->unit : "",
+                     .initial = required ? NULL : pls_format_double(initial, parameter->initial),
+                     .minimum = parameter->minimum,
+                     .maximum = parameter->maximum,
+                     .meaning = parameter->meaning ? parameter->meaning : ""};
+}
+
+bool pls_schema_word(const char *words, size_t k, char word[64])
+{
+    const char *at = words;
+    for (; at && k > 0; --k)
+    {
+        at = strchr(at, '|');
+        if (at) ++at;
+    }
+    if (!at || !*at) return false;
+    size_t size = strcspn(at, "|");
+    if (size > 63) size = 63;
+    memcpy(word, at, size);
+    word[size] = '\0';
+    return true;
+}
+
+bool pls_schema_has_word(const char *words, const char *text)
+{
+    char word[64];
+    for (size_t k = 0; words && pls_schema_word(words, k, word); ++k)
+    {
+        if (strcmp(word, text) == 0) return true;
+    }
+    return false;
+}

@@ -1,0 +1,96 @@
+// contact_view.c -- the touching contacts after the last step, rebuilt from the list and its slots.
+
+#include "contact/contact_view.h"
+
+#include "base/alloc.h"
+#include "step/world.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int by_numbers(const void *a, const void *b)
+{
+    const pls_contact_entry *p = a, *q = b;
+    if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
+    return p->number_j < q->number_j ? -1 : p->number_j > q->number_j;
+}
+
+static void fill_entry(const pls_world *world, const pls_pair_section *section, size_t c, pls_contact_entry *e)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_bodies *b = &world->bodies;
+    uint32_t i = list->row_i[c], j = list->row_j[c];
+    const pls_body_place *p = &b->place[i], *q = &b->place[j];
+    *e = (pls_contact_entry){.number_i = b->kind[i].number, .number_j = b->kind[j].number, .row_i = i, .row_j = j, .wall = section->wall};
+    pls_vec3 x = pls_vec(p->x, p->y, p->z), d = pls_sub(pls_vec(q->x, q->y, q->z), x);
+    const double *slot = list->slot + c * PLS_SLOT;
+    double effective_radius = p->radius;
+    if (section->wall)
+    {
+        slot = pls_wall_slot(list, c);
+        e->normal = pls_scale(pls_wall_normal(&b->orientation[j], world->def.dimension), -1.0);
+        double height = pls_dot(e->normal, d);
+        e->delta = p->radius - height;
+        e->branch = pls_scale(e->normal, height);
+    }
+    else
+    {
+        if (world->domain.any_periodic)
+        {
+            const int16_t *s = list->shift[c];
+            d = pls_add(d, pls_vec(s[0] * world->domain.edge[0], s[1] * world->domain.edge[1], s[2] * world->domain.edge[2]));
+        }
+        double distance = pls_length(d);
+        e->normal = pls_scale(d, 1.0 / distance);
+        e->delta = p->radius + q->radius - distance;
+        e->branch = d;
+        effective_radius = p->radius * q->radius / (p->radius + q->radius);
+    }
+    e->point = pls_add(x, pls_scale(e->normal, p->radius - 0.5 * e->delta));
+    e->force = pls_vec(slot[0], slot[1], slot[2]);
+
+    // The stored spring is half a step ahead of now; take its lead back.
+    const pls_law *law = &world->laws.law[section->law];
+    const double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
+    pls_vec3 wi = pls_vec(b->spin[i].wx, b->spin[i].wy, b->spin[i].wz), wj = pls_vec(b->spin[j].wx, b->spin[j].wy, b->spin[j].wz);
+    pls_vec3 arm_i = pls_sub(e->point, x), arm_j = section->wall ? pls_sub(e->point, pls_vec(q->x, q->y, q->z)) : pls_sub(arm_i, d);
+    pls_vec3 v = pls_sub(pls_add(pls_vec(p->vx, p->vy, p->vz), pls_cross(wi, arm_i)), pls_add(pls_vec(q->vx, q->vy, q->vz), pls_cross(wj, arm_j)));
+    if (!section->wall && world->domain.any_periodic)
+    {
+        const int16_t *s = list->shift[c];
+        v = pls_sub(v, pls_vec(s[0] * world->domain.edge_rate[0], s[1] * world->domain.edge_rate[1], s[2] * world->domain.edge_rate[2]));
+    }
+    pls_vec3 slip = pls_sub(v, pls_scale(e->normal, pls_dot(v, e->normal)));
+    pls_vec3 spring = pls_sub(pls_vec(history[0], history[1], history[2]), pls_scale(slip, 0.5 * world->dt));
+    double mass_sum = p->inv_mass + q->inv_mass;
+    pls_contact_point point = {.delta = fmax(e->delta, 0.0),
+                               .effective_radius = effective_radius,
+                               .effective_mass = mass_sum > 0.0 ? 1.0 / mass_sum : INFINITY,
+                               .spring_squared = pls_dot(spring, spring),
+                               .history = history + 3};
+    law->ops->stiffness(law->constants, &point, &e->stiffness);
+    law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);
+}
+
+pls_status pls_contact_view_make(pls_world *world, pls_contact_view *view)
+{
+    view->count = 0;
+    PLS_TRY(pls_world_prepare(world));
+    if (world->memory_holds) return pls_fail(PLS_INVALID_ARGUMENT, "bodies or laws have changed since the last step; contacts are known again after the next");
+    const pls_pair_list *list = &world->list;
+    PLS_TRY(pls_reserve(&view->entry, &view->capacity, pls_pair_list_touching(list), sizeof *view->entry, "the view of contacts"));
+    for (size_t s = 0; s < list->section_count; ++s)
+    {
+        const pls_pair_section *section = &list->section[s];
+        for (size_t c = section->first; c < section->first + section->count; ++c)
+            if (pls_pair_touches(list, c)) fill_entry(world, section, c, &view->entry[view->count++]);
+    }
+    if (view->count > 1) qsort(view->entry, view->count, sizeof *view->entry, by_numbers);
+    return PLS_OK;
+}
+
+void pls_contact_view_free(pls_contact_view *view)
+{
+    pls_release(&view->entry);
+    memset(view, 0, sizeof *view);
+}

@@ -1,0 +1,97 @@
+// fields.c -- the tables of fields (DESIGN contract 2): bodies from the list in model/bodies.h, contacts and states from here.
+
+#include "contact/pair_list.h"
+#include "model/bodies.h"
+#include "step/world.h"
+
+#include <string.h>
+
+size_t pls_type_size(pls_type type)
+{
+    switch (type)
+    {
+    case PLS_F64: return 8;
+    case PLS_F32: return 4;
+    case PLS_U32: return 4;
+    case PLS_U16: return 2;
+    case PLS_U8: return 1;
+    }
+    return 0;
+}
+
+enum body_columns
+{
+#define COLUMN_NUMBER(type, name) COLUMN_##name,
+    PLS_BODY_COLUMNS(COLUMN_NUMBER)
+#undef COLUMN_NUMBER
+};
+
+#define PERSISTS PLS_FIELD_PERSISTS
+#define FRAME PLS_FIELD_FRAME
+#define ID PLS_FIELD_ID
+#define OFFSET_OF(row, member) OFFSET_EMPTY_##row(member)
+#define OFFSET_EMPTY_double(member) 0
+#define OFFSET_EMPTY_pls_body_place(member) offsetof(pls_body_place, member)
+#define OFFSET_EMPTY_pls_body_spin(member) offsetof(pls_body_spin, member)
+#define OFFSET_EMPTY_pls_body_orientation(member) offsetof(pls_body_orientation, member)
+#define OFFSET_EMPTY_pls_body_load(member) offsetof(pls_body_load, member)
+#define OFFSET_EMPTY_pls_body_mass(member) offsetof(pls_body_mass, member)
+#define OFFSET_EMPTY_pls_body_kind(member) offsetof(pls_body_kind, member)
+
+static const pls_field body_fields[] = {
+#define BODY_FIELD(name, type, components, flags, unit, column, row, member, meaning)                                                                \
+    {name, type, components, flags, unit, meaning, COLUMN_##column, OFFSET_OF(row, member)},
+    PLS_BODY_FIELDS(BODY_FIELD)
+#undef BODY_FIELD
+};
+
+typedef struct pls_remembered remembered;
+
+static const pls_field contact_fields[] = {
+    {"body_i", PLS_U32, 1, PERSISTS | ID, "", "number of the body with the lower number (of the body, at a wall)", 0, offsetof(remembered, number_i)},
+    {"body_j", PLS_U32, 1, PERSISTS | ID, "", "number of its partner (of the wall)", 0, offsetof(remembered, number_j)},
+    {"spring", PLS_F64, 3, PERSISTS, "m", "tangential spring, half a step ahead", 0, offsetof(remembered, spring)},
+    {"history", PLS_F64, PLS_LAW_MAX_HISTORY, PERSISTS, "", "the law's own numbers", 0, offsetof(remembered, history)},
+};
+
+static const pls_field state_fields[] = {
+    {"value", PLS_F64, 1, PERSISTS | ID, "", "values of all states in order of creation", 0, 0},
+};
+
+static const struct
+{
+    const char *name;
+    const pls_field *field;
+    size_t count;
+} tables[PLS_TABLE_COUNT] = {
+    [PLS_TABLE_BODIES] = {"bodies", body_fields, sizeof body_fields / sizeof body_fields[0]},
+    [PLS_TABLE_CONTACTS] = {"contacts", contact_fields, sizeof contact_fields / sizeof contact_fields[0]},
+    [PLS_TABLE_STATES] = {"states", state_fields, sizeof state_fields / sizeof state_fields[0]},
+};
+
+const pls_field *pls_fields(pls_table_kind table, size_t *count)
+{
+    *count = tables[table].count;
+    return tables[table].field;
+}
+
+const char *pls_table_name(pls_table_kind table) { return tables[table].name; }
+
+const pls_field *pls_field_find(pls_table_kind table, const char *name)
+{
+    for (size_t k = 0; k < tables[table].count; ++k)
+        if (strcmp(tables[table].field[k].name, name) == 0) return &tables[table].field[k];
+    return NULL;
+}
+
+pls_status pls_world_body_field(const pls_world *world, const char *name, pls_field_view *view)
+{
+    const pls_field *field = pls_field_find(PLS_TABLE_BODIES, name);
+    if (!field) return pls_fail(PLS_NOT_FOUND, "bodies have no field '%s'", name);
+    *view = (pls_field_view){.data = (const char *)pls_bodies_column(&world->bodies, field->column) + field->offset,
+                             .stride = pls_bodies_row_size(field->column),
+                             .count = world->bodies.count,
+                             .type = field->type,
+                             .components = field->components};
+    return PLS_OK;
+}

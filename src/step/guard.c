@@ -1,0 +1,90 @@
+// guard.c -- what stops a run: numbers that are none, bodies that flew away, overlaps that no contact law is made for.
+
+#include "step/world.h"
+
+static const double far_away = 1000.0; ///< sizes of the first arrangement; who goes further is lost
+
+pls_status pls_guard_finite(pls_world *world)
+{
+    const pls_bodies *b = &world->bodies;
+    for (uint32_t number = 0; number < b->numbers; ++number)
+    {
+        uint32_t row = b->row_of[number];
+        if (row == PLS_NO_ROW) continue;
+        const pls_body_place *p = &b->place[row];
+        const pls_body_spin *s = &b->spin[row];
+        if (isfinite(p->x + p->y + p->z) && isfinite(p->vx + p->vy + p->vz) && isfinite(s->wx + s->wy + s->wz)) continue;
+        return pls_fail(PLS_NOT_A_NUMBER,
+                        "body %u of '%s' has position (%g, %g, %g) m, velocity (%g, %g, %g) m/s, spin (%g, %g, %g) rad/s at t = %g s, step %llu. Likely causes: a time step too "
+                        "large for the contacts, two bodies at the same place, or a force or law that divides by zero",
+                        number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz, s->wx, s->wy, s->wz,
+                        world->time, (unsigned long long)world->step);
+    }
+    return PLS_OK;
+}
+
+static pls_status overlap_failure(const pls_world *world, uint32_t i, uint32_t j, double delta, double radius)
+{
+    const pls_bodies *b = &world->bodies;
+    return pls_fail(PLS_RUNAWAY_OVERLAP,
+                    "bodies %u of '%s' and %u of '%s' overlap by %g m at t = %g s, step %llu: that is %.3g of the smaller radius %g m, and max_overlap is %g. Likely causes: bodies "
+                    "placed into each other, contacts too soft for the load, or a time step too large. Mend that, or raise guard.max_overlap",
+                    b->kind[i].number, pls_world_group_name(world, (pls_group_id){b->kind[i].group}), b->kind[j].number,
+                    pls_world_group_name(world, (pls_group_id){b->kind[j].group}), delta, world->time, (unsigned long long)world->step, delta / radius, radius,
+                    world->def.max_overlap);
+}
+
+pls_status pls_guard_overlap(pls_world *world)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_bodies *b = &world->bodies;
+    for (size_t s = 0; s < list->section_count; ++s)
+    {
+        const pls_pair_section *section = &list->section[s];
+        pls_vec3 n = {0};
+        if (section->wall) n = pls_wall_normal(&b->orientation[section->wall_row], world->def.dimension);
+        for (size_t c = section->first; c < section->first + section->count; ++c)
+        {
+            if (!pls_pair_touches(list, c)) continue;
+            const pls_body_place *p = &b->place[list->row_i[c]], *q = &b->place[list->row_j[c]];
+            double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius = p->radius;
+            if (section->wall) delta = p->radius + n.x * d[0] + n.y * d[1] + n.z * d[2];
+            else
+            {
+                for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
+                delta = p->radius + q->radius - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                radius = fmin(p->radius, q->radius);
+            }
+            if (delta > world->def.max_overlap * radius) return overlap_failure(world, list->row_i[c], list->row_j[c], delta, radius);
+        }
+    }
+    return PLS_OK;
+}
+
+static pls_status guard_lost(const pls_world *world)
+{
+    const pls_bodies *b = &world->bodies;
+    for (uint32_t number = 0; number < b->numbers; ++number)
+    {
+        uint32_t row = b->row_of[number];
+        if (row == PLS_NO_ROW || (b->kind[row].flags & PLS_BODY_UNBOUNDED)) continue;
+        const pls_body_place *p = &b->place[row];
+        pls_vec3 d = pls_sub(pls_vec(p->x, p->y, p->z), world->centre);
+        if (world->domain.periodic[0]) d.x = 0.0;
+        if (world->domain.periodic[1]) d.y = 0.0;
+        if (world->domain.periodic[2]) d.z = 0.0;
+        if (pls_length(d) > far_away * world->extent)
+            return pls_fail(PLS_LOST_BODY,
+                            "body %u of '%s' is at (%g, %g, %g) m with velocity (%g, %g, %g) m/s at t = %g s, step %llu: %g times the size of the first arrangement away from it. "
+                            "Likely causes: a wall is missing, contacts too soft for its speed, or a time step too large",
+                            number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz, world->time,
+                            (unsigned long long)world->step, far_away);
+    }
+    return PLS_OK;
+}
+
+pls_status pls_guard_step(pls_world *world)
+{
+    PLS_TRY(pls_guard_overlap(world));
+    return guard_lost(world);
+}

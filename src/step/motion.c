@@ -1,0 +1,231 @@
+// motion.c -- bodies advanced one by one: partly or fully driven by given velocities, and bodies with three different moments of inertia.
+//
+// The passes of velocity_verlet_simd.c go over these bodies too (their inverse mass or inertia may be zero there); what they did is replaced here.
+//
+// Free rotation of a body with three different moments: the torque-free motion over dt is split into rotations about the principal axes,
+// R1(dt/2) R2(dt/2) R3(dt) R2(dt/2) R1(dt/2), each exact for its part of the kinetic energy (Dullweber, Leimkuhler & McLachlan 1997). The angular momentum in
+// the world frame is not touched, the map is symplectic and of second order, so |L| stays to round-off and energy has no drift. Torques kick L by halves.
+
+#include "step/world.h"
+
+#include "base/alloc.h"
+
+static pls_vec3 place_position(const pls_body_place *p) { return pls_vec(p->x, p->y, p->z); }
+
+static pls_quat body_quat(const pls_bodies *b, uint32_t row)
+{
+    const pls_body_orientation *q = &b->orientation[row];
+    return (pls_quat){q->w, q->x, q->y, q->z};
+}
+
+static void set_position(pls_body_place *p, pls_vec3 x) { p->x = x.x, p->y = x.y, p->z = x.z; }
+static void set_velocity(pls_body_place *p, pls_vec3 v) { p->vx = v.x, p->vy = v.y, p->vz = v.z; }
+static void set_spin(pls_body_spin *s, pls_vec3 w) { s->wx = w.x, s->wy = w.y, s->wz = w.z; }
+static void set_quat(pls_body_orientation *o, pls_quat q) { *o = (pls_body_orientation){q.w, q.x, q.y, q.z}; }
+
+/// Rotation by the vector angle `a` [rad].
+static pls_quat rotation_by(pls_vec3 a)
+{
+    double angle = pls_length(a);
+    if (angle == 0.0) return pls_quat_identity();
+    double s = sin(0.5 * angle) / angle;
+    return (pls_quat){cos(0.5 * angle), s * a.x, s * a.y, s * a.z};
+}
+
+pls_status pls_find_specials(pls_world *world)
+{
+    const pls_bodies *bodies = &world->bodies;
+    world->special_count = 0;
+    for (uint32_t number = 0; number < bodies->numbers; ++number)
+    {
+        uint32_t row = bodies->row_of[number];
+        if (row == PLS_NO_ROW || !(bodies->kind[row].flags & (PLS_BODY_SPECIAL | PLS_BODY_ANISOTROPIC))) continue;
+        PLS_TRY(pls_reserve(&world->special, &world->special_capacity, world->special_count + 1, sizeof *world->special, "bodies advanced one by one"));
+        world->special[world->special_count++] = (pls_special){.row = row};
+    }
+    world->special_stale = false;
+    return PLS_OK;
+}
+
+static const pls_motion_def *motion_of(const pls_world *world, uint32_t row)
+{
+    static const pls_motion_def none = {0};
+    uint32_t k = world->bodies.kind[row].motion;
+    return k ? &world->motion[k - 1] : &none;
+}
+
+static pls_status driven_velocities(const pls_world *world, uint32_t row, double time, pls_vec3 *v, pls_vec3 *w)
+{
+    const pls_motion_def *m = motion_of(world, row);
+    *v = m->velocity;
+    *w = m->angular_velocity;
+    if (!m->function) return PLS_OK;
+    PLS_TRY(m->function(m->context, time, v, w));
+    if (!isfinite(v->x + v->y + v->z + w->x + w->y + w->z))
+        return pls_fail(PLS_NOT_A_NUMBER, "the motion given for body %u is not a number at t = %g s", world->bodies.kind[row].number, time);
+    return PLS_OK;
+}
+
+/// Given where the axis is prescribed, else free.
+static pls_vec3 choose(unsigned axes, unsigned first, pls_vec3 given, pls_vec3 free)
+{
+    return pls_vec((axes & first) ? given.x : free.x, (axes & (first << 1)) ? given.y : free.y, (axes & (first << 2)) ? given.z : free.z);
+}
+
+pls_status pls_special_start(pls_world *world)
+{
+    PLS_TRY(pls_find_specials(world));
+    for (size_t k = 0; k < world->special_count; ++k)
+    {
+        uint32_t row = world->special[k].row;
+        const pls_motion_def *m = motion_of(world, row);
+        if (m->axes == 0) continue;
+        pls_body_place *p = &world->bodies.place[row];
+        pls_body_spin *s = &world->bodies.spin[row];
+        pls_vec3 v, w;
+        PLS_TRY(driven_velocities(world, row, world->time, &v, &w));
+        if (m->about) v = pls_cross(w, pls_sub(place_position(p), m->centre));
+        set_velocity(p, choose(m->axes, PLS_AXIS_X, v, pls_vec(p->vx, p->vy, p->vz)));
+        set_spin(s, choose(m->axes, PLS_AXIS_RX, w, pls_vec(s->wx, s->wy, s->wz)));
+    }
+    return PLS_OK;
+}
+
+pls_status pls_special_before(pls_world *world)
+{
+    if (world->special_stale) PLS_TRY(pls_find_specials(world));
+    for (size_t k = 0; k < world->special_count; ++k)
+    {
+        pls_special *s = &world->special[k];
+        const pls_body_place *p = &world->bodies.place[s->row];
+        const pls_body_spin *w = &world->bodies.spin[s->row];
+        s->position = place_position(p);
+        s->velocity = pls_vec(p->vx, p->vy, p->vz);
+        s->spin = pls_vec(w->wx, w->wy, w->wz);
+        s->orientation = body_quat(&world->bodies, s->row);
+    }
+    return PLS_OK;
+}
+
+static pls_vec3 divide(pls_vec3 a, const pls_body_mass *m) { return pls_vec(a.x / m->ix, a.y / m->iy, a.z / m->iz); }
+static pls_vec3 multiply(pls_vec3 a, const pls_body_mass *m) { return pls_vec(a.x * m->ix, a.y * m->iy, a.z * m->iz); }
+
+/// One rotation of the splitting: about principal axis `axis` for time h. `l` is the angular momentum in the body's frame.
+static void split_turn(pls_vec3 *l, pls_quat *q, const pls_body_mass *m, int axis, double h)
+{
+    double angle = h * (axis == 0 ? l->x / m->ix : axis == 1 ? l->y / m->iy : l->z / m->iz);
+    pls_vec3 about = pls_vec(axis == 0 ? angle : 0.0, axis == 1 ? angle : 0.0, axis == 2 ? angle : 0.0);
+    pls_quat step = rotation_by(about);
+    *l = pls_rotate_back(step, *l);
+    *q = pls_quat_multiply(*q, step);
+}
+
+static void rotate_freely(pls_vec3 momentum, pls_quat *q, const pls_body_mass *m, double dt)
+{
+    pls_vec3 l = pls_rotate_back(*q, momentum);
+    split_turn(&l, q, m, 0, 0.5 * dt);
+    split_turn(&l, q, m, 1, 0.5 * dt);
+    split_turn(&l, q, m, 2, dt);
+    split_turn(&l, q, m, 1, 0.5 * dt);
+    split_turn(&l, q, m, 0, 0.5 * dt);
+    *q = pls_quat_unit(*q);
+}
+
+static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m) { return pls_rotate(q, divide(pls_rotate_back(q, momentum), m)); }
+
+static void drift_anisotropic(pls_world *world, pls_special *s)
+{
+    pls_bodies *b = &world->bodies;
+    const pls_body_mass *m = &b->mass[s->row];
+    const pls_body_load *now = &b->load[s->row], *before = &b->load_before[s->row];
+    pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz), sum = pls_add(torque, pls_vec(before->tx, before->ty, before->tz));
+    pls_vec3 momentum = pls_rotate(s->orientation, multiply(pls_rotate_back(s->orientation, s->spin), m));
+    s->half_spin = pls_add(momentum, pls_scale(torque, 0.5 * world->dt));
+    pls_quat q = s->orientation;
+    rotate_freely(s->half_spin, &q, m, world->dt);
+    set_quat(&b->orientation[s->row], q);
+    set_spin(&b->spin[s->row], spin_of(pls_add(s->half_spin, pls_scale(sum, 0.25 * world->dt)), q, m));
+}
+
+static pls_status drift_driven(pls_world *world, pls_special *s)
+{
+    pls_bodies *b = &world->bodies;
+    const pls_motion_def *motion = motion_of(world, s->row);
+    pls_body_place *p = &b->place[s->row];
+    const pls_body_load *now = &b->load[s->row], *before = &b->load_before[s->row];
+    double dt = world->dt;
+    pls_vec3 v_mid, w_mid;
+    PLS_TRY(driven_velocities(world, s->row, world->time + 0.5 * dt, &v_mid, &w_mid));
+    PLS_TRY(driven_velocities(world, s->row, world->time + dt, &s->driven_velocity, &s->driven_spin));
+
+    bool anisotropic = (b->kind[s->row].flags & PLS_BODY_ANISOTROPIC) != 0;
+    bool turns_driven = (motion->axes & (PLS_AXIS_RX | PLS_AXIS_RY | PLS_AXIS_RZ)) != 0;
+    if (anisotropic && !turns_driven) drift_anisotropic(world, s);
+    else
+    {
+        // Partly driven rotation of an anisotropic body: each free world axis answers with its own moment.
+        pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz), sum = pls_add(torque, pls_vec(before->tx, before->ty, before->tz));
+        double inv = b->spin[s->row].inv_inertia;
+        const pls_body_mass *m = &b->mass[s->row];
+        pls_vec3 accelerate = anisotropic ? spin_of(torque, s->orientation, m) : pls_scale(torque, inv);
+        pls_vec3 accelerate_sum = anisotropic ? spin_of(sum, s->orientation, m) : pls_scale(sum, inv);
+        s->half_spin = choose(motion->axes, PLS_AXIS_RX, w_mid, pls_add(s->spin, pls_scale(accelerate, 0.5 * dt)));
+        pls_vec3 seen = choose(motion->axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate_sum, 0.25 * dt)));
+        set_quat(&b->orientation[s->row], pls_quat_unit(pls_quat_multiply(rotation_by(pls_scale(s->half_spin, dt)), s->orientation)));
+        set_spin(&b->spin[s->row], seen);
+    }
+
+    double inv_mass = p->inv_mass;
+    pls_vec3 force = pls_vec(now->fx, now->fy, now->fz), sum = pls_add(force, pls_vec(before->fx, before->fy, before->fz));
+    if (motion->about)
+    {
+        pls_vec3 arm = pls_rotate(rotation_by(pls_scale(w_mid, dt)), pls_sub(s->position, motion->centre));
+        set_position(p, pls_add(motion->centre, arm));
+        s->driven_velocity = pls_cross(s->driven_spin, arm);
+        s->half_velocity = v_mid;
+        set_velocity(p, s->driven_velocity);
+        return PLS_OK;
+    }
+    s->half_velocity = choose(motion->axes, PLS_AXIS_X, v_mid, pls_add(s->velocity, pls_scale(force, 0.5 * dt * inv_mass)));
+    set_position(p, pls_add(s->position, pls_scale(s->half_velocity, dt)));
+    set_velocity(p, choose(motion->axes, PLS_AXIS_X, s->driven_velocity, pls_add(s->half_velocity, pls_scale(sum, 0.25 * dt * inv_mass))));
+    return PLS_OK;
+}
+
+pls_status pls_special_drift(pls_world *world)
+{
+    for (size_t k = 0; k < world->special_count; ++k)
+    {
+        pls_special *s = &world->special[k];
+        if (world->bodies.kind[s->row].flags & PLS_BODY_SPECIAL) PLS_TRY(drift_driven(world, s));
+        else drift_anisotropic(world, s);
+    }
+    return PLS_OK;
+}
+
+void pls_special_finish(pls_world *world)
+{
+    pls_bodies *b = &world->bodies;
+    double half = 0.5 * world->dt;
+    for (size_t k = 0; k < world->special_count; ++k)
+    {
+        const pls_special *s = &world->special[k];
+        const pls_body_load *load = &b->load[s->row];
+        const pls_body_mass *m = &b->mass[s->row];
+        pls_vec3 torque = pls_vec(load->tx, load->ty, load->tz), force = pls_vec(load->fx, load->fy, load->fz);
+        uint32_t flags = b->kind[s->row].flags;
+        const pls_motion_def *motion = motion_of(world, s->row);
+        pls_quat q = body_quat(b, s->row);
+        bool turns_driven = (motion->axes & (PLS_AXIS_RX | PLS_AXIS_RY | PLS_AXIS_RZ)) != 0;
+        if ((flags & PLS_BODY_ANISOTROPIC) && !turns_driven)
+            set_spin(&b->spin[s->row], spin_of(pls_add(s->half_spin, pls_scale(torque, half)), q, m));
+        else
+        {
+            pls_vec3 accelerate = (flags & PLS_BODY_ANISOTROPIC) ? spin_of(torque, q, m) : pls_scale(torque, b->spin[s->row].inv_inertia);
+            set_spin(&b->spin[s->row], choose(motion->axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate, half))));
+        }
+        if (!(flags & PLS_BODY_SPECIAL)) continue;
+        double inv_mass = b->place[s->row].inv_mass;
+        set_velocity(&b->place[s->row], choose(motion->axes, PLS_AXIS_X, s->driven_velocity, pls_add(s->half_velocity, pls_scale(force, half * inv_mass))));
+    }
+}

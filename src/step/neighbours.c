@@ -1,0 +1,150 @@
+// neighbours.c -- when to make the pair list anew, with which skin, and when to re-order bodies in memory. None of this changes a result.
+
+#include "step/world.h"
+
+#include "base/alloc.h"
+#include "base/clock.h"
+#include "base/sort.h"
+#include "contact/broad_phase.h"
+
+#include <string.h>
+
+static const double first_skin = 0.2;     ///< of the mean radius, where the search for the best skin starts
+static const double least_skin = 0.02;    ///< of the mean radius
+static const double most_skin = 1.5;      ///< of the mean radius
+static const double first_change = 1.25;  ///< first factor tried; it shrinks towards `last_change`
+static const double last_change = 1.05;
+static const int builds_per_window = 6;   ///< rebuilds measured before the skin is changed
+static const double window_seconds = 0.2; ///< wall time measured at least
+static const uint64_t builds_per_order = 24; ///< rebuilds between looks at the memory order
+
+static double mean_radius(const pls_world *world)
+{
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t row = 0; row < world->bodies.count; ++row)
+        if (!(world->bodies.kind[row].flags & PLS_BODY_UNBOUNDED))
+        {
+            sum += world->bodies.place[row].radius;
+            ++count;
+        }
+    return count ? sum / (double)count : 1.0;
+}
+
+/// Hill climbing on wall time per step: go on while it falls, turn and take smaller steps when it rises.
+static void tune_skin(pls_world *world)
+{
+    pls_skin_tuner *tuner = &world->tuner;
+    if (world->def.skin > 0.0)
+    {
+        tuner->skin = world->def.skin;
+        return;
+    }
+    double mean = mean_radius(world), now = pls_clock();
+    if (tuner->skin == 0.0)
+    {
+        *tuner = (pls_skin_tuner){.skin = first_skin * mean, .factor = first_change, .last_cost = INFINITY, .since = now, .steps = world->step};
+        return;
+    }
+    double elapsed = now - tuner->since;
+    if (++tuner->builds < builds_per_window || elapsed < window_seconds) return;
+    double cost = elapsed / (double)(world->step - tuner->steps + 1);
+    if (cost > tuner->last_cost)
+    {
+        double smaller = fmax(sqrt(fmax(tuner->factor, 1.0 / tuner->factor)), last_change);
+        tuner->factor = tuner->factor > 1.0 ? 1.0 / smaller : smaller;
+    }
+    tuner->last_cost = cost;
+    tuner->skin = fmin(fmax(tuner->skin * tuner->factor, least_skin * mean), most_skin * mean);
+    tuner->since = now;
+    tuner->steps = world->step;
+    tuner->builds = 0;
+}
+
+/// Put bodies into the order of a space-filling curve. The contacts must be in `memory`.
+static pls_status order_bodies(pls_world *world)
+{
+    pls_bodies *bodies = &world->bodies;
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, cell = 2.0 * mean_radius(world);
+    for (size_t row = 0; row < bodies->count; ++row)
+    {
+        const double x[3] = {bodies->place[row].x, bodies->place[row].y, bodies->place[row].z};
+        for (int a = 0; a < 3 && !(bodies->kind[row].flags & PLS_BODY_UNBOUNDED); ++a) lower[a] = fmin(lower[a], x[a]);
+    }
+    uint64_t *key = NULL;
+    uint32_t *old_row = NULL;
+    pls_status status = pls_allocate(&key, bodies->count, sizeof *key, "ordering bodies");
+    if (status == PLS_OK) status = pls_allocate(&old_row, bodies->count, sizeof *old_row, "ordering bodies");
+    bool ordered = true;
+    for (size_t row = 0; status == PLS_OK && row < bodies->count; ++row)
+    {
+        const double x[3] = {bodies->place[row].x, bodies->place[row].y, bodies->place[row].z};
+        key[row] = (bodies->kind[row].flags & PLS_BODY_UNBOUNDED) ? UINT64_MAX : pls_morton_key(x, lower, cell);
+        old_row[row] = (uint32_t)row;
+        if (row > 0 && key[row] < key[row - 1]) ordered = false;
+    }
+    if (status == PLS_OK && !ordered)
+    {
+        status = pls_radix_sort_u64(key, old_row, bodies->count);
+        if (status == PLS_OK) status = pls_bodies_reorder(bodies, old_row);
+        world->special_stale = true;
+    }
+    pls_release(&key);
+    pls_release(&old_row);
+    return status;
+}
+
+pls_status pls_neighbours_detach(pls_world *world)
+{
+    if (!world->memory_holds && world->list.count > 0)
+    {
+        PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->laws, &world->memory));
+        world->memory_holds = true;
+    }
+    world->list.stale = true;
+    return PLS_OK;
+}
+
+void pls_neighbours_moved(pls_world *world, double largest_square)
+{
+    double images = 0.0; // a stretching box carries images away
+    for (int a = 0; a < 3; ++a) images += fabs(world->domain.edge_rate[a]) * world->dt * world->list.image_reach[a];
+    world->list.drift += 2.0 * sqrt(largest_square) + images;
+    world->list.image_drift += images;
+}
+
+/// Sum of the two largest true displacements since the list was made, growth of radii included.
+static double true_drift(const pls_world *world)
+{
+    const pls_pair_list *list = &world->list;
+    double largest = 0.0, second = 0.0;
+    for (size_t row = 0; row < world->bodies.count; ++row)
+    {
+        const pls_body_place *p = &world->bodies.place[row];
+        double x = p->x - list->reference[row][0], y = p->y - list->reference[row][1], z = p->z - list->reference[row][2];
+        double moved = sqrt(x * x + y * y + z * z);
+        if (isfinite(p->radius)) moved += fmax(0.0, p->radius - list->reference_radius[row]);
+        if (moved > largest) second = largest, largest = moved;
+        else if (moved > second) second = moved;
+    }
+    return largest + second + list->image_drift;
+}
+
+pls_status pls_neighbours_refresh(pls_world *world)
+{
+    pls_pair_list *list = &world->list;
+    if (!list->stale)
+    {
+        if (list->drift < list->skin) return PLS_OK;
+        list->drift = true_drift(world);
+        if (list->drift < 0.9 * list->skin) return PLS_OK;
+    }
+    PLS_TRY(pls_neighbours_detach(world));
+    tune_skin(world);
+    if (world->def.reorder && list->builds % builds_per_order == 0) PLS_TRY(order_bodies(world));
+    PLS_TRY(pls_pair_list_build(list, &world->bodies, &world->domain, &world->laws, world->tuner.skin, &world->memory));
+    world->memory_holds = false;
+    world->memory.count = 0;
+    if (world->special_stale) PLS_TRY(pls_find_specials(world));
+    return PLS_OK;
+}

@@ -1,0 +1,214 @@
+// persist.c -- the world as tables in the order of ids, out and back in, and the state hash made from them.
+
+#include "step/persist.h"
+
+#include "base/alloc.h"
+#include "base/hash.h"
+#include "step/world.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int by_numbers(const void *a, const void *b)
+{
+    const struct pls_remembered *p = a, *q = b;
+    if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
+    return p->number_j < q->number_j ? -1 : p->number_j > q->number_j;
+}
+
+/// Contacts in order of numbers: i below j for pairs, the wall second for walls.
+static pls_status contact_table(pls_world *world, pls_contact_memory *memory)
+{
+    if (world->memory_holds)
+    {
+        PLS_TRY(pls_contact_memory_reserve(memory, world->memory.count));
+        memcpy(memory->entry, world->memory.entry, world->memory.count * sizeof *memory->entry);
+        memory->count = world->memory.count;
+    }
+    else if (world->list.count > 0) PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->laws, memory));
+    if (memory->count > 1) qsort(memory->entry, memory->count, sizeof *memory->entry, by_numbers);
+    return PLS_OK;
+}
+
+pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
+{
+    pls_persist_save_end(world);
+    pls_contact_memory *contacts = NULL;
+    PLS_TRY(pls_allocate(&contacts, 1, sizeof *contacts, "the table of contacts"));
+    pls_status status = contact_table(world, contacts);
+    if (status != PLS_OK)
+    {
+        pls_contact_memory_free(contacts);
+        pls_release(&contacts);
+        return status;
+    }
+    world->persisting = contacts;
+    *header = (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt, .body_numbers = (double)world->bodies.numbers};
+    header->rows[PLS_TABLE_BODIES] = world->bodies.count;
+    header->rows[PLS_TABLE_CONTACTS] = contacts->count;
+    header->rows[PLS_TABLE_STATES] = world->value_count;
+    return PLS_OK;
+}
+
+void pls_persist_save_end(pls_world *world)
+{
+    pls_contact_memory *contacts = world->persisting;
+    if (!contacts) return;
+    pls_contact_memory_free(contacts);
+    pls_release(&contacts);
+    world->persisting = NULL;
+}
+
+pls_status pls_persist_get(pls_world *world, pls_table_kind table, const pls_field *field, void *out)
+{
+    size_t size = (size_t)field->components * pls_type_size(field->type);
+    char *to = out;
+    if (table == PLS_TABLE_BODIES)
+    {
+        const char *column = (const char *)pls_bodies_column(&world->bodies, field->column) + field->offset;
+        size_t stride = pls_bodies_row_size(field->column);
+        for (size_t n = 0; n < world->bodies.numbers; ++n)
+        {
+            uint32_t row = world->bodies.row_of[n];
+            if (row == PLS_NO_ROW) continue;
+            memcpy(to, column + row * stride, size);
+            to += size;
+        }
+        return PLS_OK;
+    }
+    if (table == PLS_TABLE_STATES)
+    {
+        if (world->value_count) memcpy(to, world->state_value, world->value_count * sizeof(double));
+        return PLS_OK;
+    }
+    const pls_contact_memory *contacts = world->persisting;
+    if (!contacts) return pls_fail(PLS_INVALID_ARGUMENT, "the contact table is read between pls_persist_save_begin and _end");
+    for (size_t k = 0; k < contacts->count; ++k) memcpy(to + k * size, (const char *)&contacts->entry[k] + field->offset, size);
+    return PLS_OK;
+}
+
+// ---- restoring -----------------------------------------------------------------------------------------------------------------------------------------
+
+pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header *header)
+{
+    if (header->rows[PLS_TABLE_STATES] != world->value_count)
+        return pls_fail(PLS_CORRUPT, "the saved state holds %llu state values, the scene has %zu", (unsigned long long)header->rows[PLS_TABLE_STATES], world->value_count);
+    if (header->rows[PLS_TABLE_BODIES] >= PLS_NO_ROW || header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || !(header->dt > 0.0) || !isfinite(header->time))
+        return pls_fail(PLS_CORRUPT, "the saved state has an impossible header");
+    if (world->bodies.count > 0 && world->extent == 0.0) PLS_TRY(pls_measure_extent(world)); // the first arrangement, not the restored one
+    pls_bodies *bodies = &world->bodies;
+    pls_bodies_clear(bodies);
+    size_t rows = (size_t)header->rows[PLS_TABLE_BODIES];
+    PLS_TRY(pls_bodies_reserve(bodies, rows));
+    for (size_t k = 0; k < rows; ++k)
+    {
+        uint32_t row;
+        PLS_TRY(pls_bodies_add_numbered(bodies, (uint32_t)k, 1, &row)); // true numbers follow with the fields
+    }
+    PLS_TRY(pls_contact_memory_reserve(&world->memory, (size_t)header->rows[PLS_TABLE_CONTACTS]));
+    world->memory.count = (size_t)header->rows[PLS_TABLE_CONTACTS];
+    world->memory_holds = true;
+    world->list.stale = true;
+    world->special_stale = true;
+    world->step = header->step;
+    world->time = header->time;
+    world->dt = header->dt;
+    return PLS_OK;
+}
+
+pls_status pls_persist_put(pls_world *world, pls_table_kind table, const pls_field *field, const void *in)
+{
+    size_t size = (size_t)field->components * pls_type_size(field->type);
+    const char *from = in;
+    if (table == PLS_TABLE_BODIES)
+    {
+        char *column = (char *)pls_bodies_column(&world->bodies, field->column) + field->offset;
+        size_t stride = pls_bodies_row_size(field->column);
+        for (size_t row = 0; row < world->bodies.count; ++row) memcpy(column + row * stride, from + row * size, size);
+    }
+    else if (table == PLS_TABLE_STATES)
+    {
+        if (world->value_count) memcpy(world->state_value, from, world->value_count * sizeof(double));
+    }
+    else
+        for (size_t k = 0; k < world->memory.count; ++k) memcpy((char *)&world->memory.entry[k] + field->offset, from + k * size, size);
+    return PLS_OK;
+}
+
+static pls_status check_body(const pls_world *world, size_t row)
+{
+    const pls_body_kind *kind = &world->bodies.kind[row];
+    const pls_body_place *p = &world->bodies.place[row];
+    if (row > 0 && kind->number <= world->bodies.kind[row - 1].number) return pls_fail(PLS_CORRUPT, "the saved bodies are not in order of their numbers");
+    if (kind->shape >= world->shape_count || kind->material >= world->laws.material_count || kind->group > world->group_count || kind->motion > world->motion_count)
+        return pls_fail(PLS_CORRUPT, "saved body %u refers to a shape, material, group or motion that the scene does not have", kind->number);
+    if (!isfinite(p->x + p->y + p->z + p->vx + p->vy + p->vz) || !(p->radius > 0.0))
+        return pls_fail(PLS_CORRUPT, "saved body %u has a position, velocity or radius that is no number", kind->number);
+    return PLS_OK;
+}
+
+/// Numbers as they were saved; what was free stays free.
+static pls_status restore_numbers(pls_world *world)
+{
+    pls_bodies *bodies = &world->bodies;
+    size_t count = bodies->count, numbers = count ? (size_t)bodies->kind[count - 1].number + 1 : 0;
+    PLS_TRY(pls_bodies_reserve(bodies, numbers));
+    for (size_t n = 0; n < numbers; ++n) bodies->row_of[n] = PLS_NO_ROW, bodies->generation_of[n] = 1;
+    for (size_t row = 0; row < count; ++row)
+    {
+        bodies->row_of[bodies->kind[row].number] = (uint32_t)row;
+        bodies->generation_of[bodies->kind[row].number] = bodies->kind[row].generation;
+    }
+    bodies->numbers = numbers;
+    bodies->removed = numbers - count;
+    return PLS_OK;
+}
+
+pls_status pls_persist_restore_end(pls_world *world)
+{
+    pls_bodies *bodies = &world->bodies;
+    for (size_t row = 0; row < bodies->count; ++row) PLS_TRY(check_body(world, row));
+    PLS_TRY(restore_numbers(world));
+    for (size_t k = 0; k < world->memory.count; ++k)
+    {
+        const struct pls_remembered *entry = &world->memory.entry[k];
+        if (entry->number_i >= bodies->numbers || entry->number_j >= bodies->numbers || bodies->row_of[entry->number_i] == PLS_NO_ROW ||
+            bodies->row_of[entry->number_j] == PLS_NO_ROW)
+            return pls_fail(PLS_CORRUPT, "a saved contact joins bodies %u and %u, which are not there", entry->number_i, entry->number_j);
+    }
+    return pls_world_resume(world);
+}
+
+// ---- hash ----------------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_status hash_tables(pls_world *world, const pls_persist_header *header, uint64_t *hash)
+{
+    for (int table = 0; table < PLS_TABLE_COUNT; ++table)
+    {
+        size_t fields;
+        const pls_field *field = pls_fields((pls_table_kind)table, &fields);
+        for (size_t k = 0; k < fields; ++k)
+        {
+            if (!(field[k].flags & PLS_FIELD_PERSISTS)) continue;
+            size_t bytes = (size_t)header->rows[table] * (size_t)field[k].components * pls_type_size(field[k].type);
+            char *copy = NULL;
+            PLS_TRY(pls_allocate(&copy, bytes, 1, "hashing the state"));
+            pls_status status = bytes ? pls_persist_get(world, (pls_table_kind)table, &field[k], copy) : PLS_OK;
+            if (status == PLS_OK && bytes) *hash = pls_hash(*hash, copy, bytes);
+            pls_release(&copy);
+            PLS_TRY(status);
+        }
+    }
+    return PLS_OK;
+}
+
+pls_status pls_world_state_hash(pls_world *world, uint64_t *hash)
+{
+    pls_persist_header header;
+    PLS_TRY(pls_persist_save_begin(world, &header));
+    *hash = pls_hash(PLS_HASH_START, &header.step, sizeof header.step);
+    *hash = pls_hash(*hash, &header.time, sizeof header.time);
+    pls_status status = hash_tables(world, &header, hash);
+    pls_persist_save_end(world);
+    return status;
+}

@@ -1,0 +1,183 @@
+// step.c -- one time step, read from top to bottom.
+//
+//     half kick, drift -> driven bodies -> states -> neighbours (if stale) -> contacts and laws -> body forces, gather, half kick -> guards
+//
+// The order differs from the picture in which states come last: forces at t + dt need states at t + dt, and after the drift the midpoint rates of everything
+// that states depend on are known (state_rk2.c).
+
+#include "step/world.h"
+
+#include "base/alloc.h"
+#include "base/parallel.h"
+#include "step/timestep.h"
+#include "step/velocity_verlet.h"
+
+#include <omp.h>
+#include <string.h>
+
+enum
+{
+    GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
+    STABLE_STEPS = 4096, ///< steps between looks at the stable step
+    BODY_BLOCK = 1024    ///< bodies per block; equal to PLS_FORCE_BATCH
+};
+
+static pls_status begin_bodies(pls_world *world)
+{
+    pls_bodies *bodies = &world->bodies;
+    size_t blocks = pls_block_count(bodies->count, BODY_BLOCK);
+    double largest = 0.0, poison = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : largest) reduction(+ : poison) // a sum of zeros, or NaN: no order to keep
+    for (size_t b = 0; b < blocks; ++b)
+    {
+        pls_drift_report report;
+        PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &report);
+        if (report.largest_square > largest) largest = report.largest_square;
+        poison += report.poison;
+    }
+    if (poison != 0.0 || isnan(poison)) return pls_guard_finite(world);
+    pls_neighbours_moved(world, largest);
+    return PLS_OK;
+}
+
+static void find_contacts_and_forces(pls_world *world, double dt_before)
+{
+    pls_pair_list *list = &world->list;
+    const pls_contact_input input = {.place = world->bodies.place,
+                                     .spin = world->bodies.spin,
+                                     .orientation = world->bodies.orientation,
+                                     .domain = &world->domain,
+                                     .laws = &world->laws,
+                                     .dt = world->dt,
+                                     .dt_before = dt_before,
+                                     .dt_after = 0.5 * world->dt};
+#pragma omp parallel for schedule(static)
+    for (size_t b = 0; b < list->block_count; ++b)
+        PLS_SIMD_SELECT(pls_contact_block)(list, &input, &list->block[b], &world->work[omp_get_thread_num()]);
+}
+
+static pls_status finish_block(pls_world *world, size_t first, size_t last, double dt, double time)
+{
+    double force[4 * BODY_BLOCK] __attribute__((aligned(64))), torque[4 * BODY_BLOCK] __attribute__((aligned(64)));
+    double scratch[PLS_FORCE_SCRATCH] __attribute__((aligned(64)));
+    bool forced = world->force_count > 0;
+    if (forced) PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
+    PLS_SIMD_SELECT(pls_verlet_finish)(&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL);
+    return PLS_OK;
+}
+
+/// Gather forces and finish velocities; `time` is the instant of the forces.
+static pls_status finish_bodies(pls_world *world, double dt, double time)
+{
+    pls_bodies *bodies = &world->bodies;
+    size_t blocks = pls_block_count(bodies->count, BODY_BLOCK);
+    pls_status worst = PLS_OK;
+    char message[512] = "";
+#pragma omp parallel for schedule(static)
+    for (size_t b = 0; b < blocks; ++b)
+    {
+        pls_status status = finish_block(world, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), dt, time);
+        if (status == PLS_OK) continue;
+#pragma omp critical(pls_finish_failure)
+        {
+            worst = status;
+            strncpy(message, pls_last_message(), sizeof message - 1); // messages belong to threads; bring it to ours
+        }
+    }
+    if (worst != PLS_OK) return pls_fail(worst, "%s", message);
+    pls_body_load *swap = bodies->load;
+    bodies->load = bodies->load_before;
+    bodies->load_before = swap;
+    return PLS_OK;
+}
+
+static pls_status check_step(pls_world *world)
+{
+    if (world->step % GUARD_STEPS == 0) PLS_TRY(pls_guard_step(world));
+    if (world->step % STABLE_STEPS == 0) PLS_TRY(pls_check_stable_step(world));
+    return PLS_OK;
+}
+
+pls_status pls_step(pls_world *world)
+{
+    PLS_TRY(pls_world_prepare(world));
+    PLS_TRY(pls_special_before(world));
+    pls_states_before(world);
+    PLS_TRY(begin_bodies(world));
+    PLS_TRY(pls_special_drift(world));
+    PLS_TRY(pls_states_advance(world));
+    PLS_TRY(pls_states_apply(world));
+    double time = (double)(world->step + 1) * world->dt;
+    pls_domain_at(&world->domain, time);
+    PLS_TRY(pls_neighbours_refresh(world));
+    find_contacts_and_forces(world, 0.5 * world->dt);
+    PLS_TRY(finish_bodies(world, world->dt, time));
+    pls_special_finish(world);
+    ++world->step;
+    world->time = time;
+    return check_step(world);
+}
+
+pls_status pls_world_run(pls_world *world, uint64_t steps)
+{
+    for (uint64_t k = 0; k < steps; ++k) PLS_TRY(pls_step(world));
+    return PLS_OK;
+}
+
+// ---- the start -----------------------------------------------------------------------------------------------------------------------------------------
+
+pls_status pls_measure_extent(pls_world *world)
+{
+    const pls_bodies *b = &world->bodies;
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t row = 0; row < b->count; ++row)
+    {
+        if (b->kind[row].flags & PLS_BODY_UNBOUNDED) continue;
+        const double x[3] = {b->place[row].x, b->place[row].y, b->place[row].z};
+        for (int a = 0; a < 3; ++a) lower[a] = fmin(lower[a], x[a] - b->place[row].radius), upper[a] = fmax(upper[a], x[a] + b->place[row].radius);
+    }
+    if (!(upper[0] >= lower[0])) return pls_fail(PLS_INVALID_ARGUMENT, "the world has no bounded body; there is nothing to simulate");
+    world->centre = pls_vec(0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1]), 0.5 * (lower[2] + upper[2]));
+    world->extent = pls_length(pls_vec(upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]));
+    return PLS_OK;
+}
+
+static pls_status reserve_work(pls_world *world)
+{
+    int threads = pls_threads();
+    if (threads <= world->work_count) return PLS_OK;
+    pls_release(&world->work);
+    world->work_count = 0;
+    PLS_TRY(pls_allocate(&world->work, (size_t)threads, sizeof *world->work, "work space of threads"));
+    world->work_count = threads;
+    return PLS_OK;
+}
+
+pls_status pls_world_resume(pls_world *world)
+{
+    PLS_TRY(reserve_work(world));
+    if (world->extent == 0.0) PLS_TRY(pls_measure_extent(world));
+    pls_domain_at(&world->domain, world->time);
+    world->prepared = false; // so that what states drive is set for now, not for the end of a step
+    PLS_TRY(pls_states_apply(world));
+    world->prepared = true;
+    return PLS_OK;
+}
+
+pls_status pls_world_prepare(pls_world *world)
+{
+    if (world->prepared) return world->work_count >= pls_threads() ? PLS_OK : reserve_work(world);
+    PLS_TRY(reserve_work(world));
+    PLS_TRY(pls_measure_extent(world));
+    pls_domain_at(&world->domain, world->time);
+    PLS_TRY(pls_states_apply(world));
+    PLS_TRY(pls_special_start(world));
+    PLS_TRY(pls_neighbours_refresh(world));
+    PLS_TRY(pls_choose_step(world));
+    find_contacts_and_forces(world, 0.0);
+    PLS_TRY(pls_guard_overlap(world));
+    PLS_TRY(finish_bodies(world, 0.0, world->time));
+    memcpy(world->bodies.load_before, world->bodies.load, world->bodies.count * sizeof *world->bodies.load); // before the start, as at the start
+    world->prepared = true;
+    return pls_guard_finite(world);
+}

@@ -1,0 +1,413 @@
+// timestep.c -- the stable time step from the contacts of each body, stiffness and damping, rotation included.
+//
+// Central differences with a dashpot are stable for  dt < (2/w)(sqrt(1 + z^2) - z),  w^2 the largest eigenvalue of M^-1 K and z = c/(2 w), c the largest of
+// M^-1 C. The largest eigenvalues of the whole are bounded from those of single bodies: a contact's energy is 1/2 k (a - b)^2 with a, b the displacements of its two
+// sides along a direction, and (a - b)^2 <= (1 + q) a^2 + (1 + 1/q) b^2 for any q > 0, so K is bounded by a matrix with one 6 x 6 block per body,
+//
+//     A_i = sum over contacts of (1 + q) (kn Jn^T Jn + kt sum over tangents Jt^T Jt),   J = (e, l n x e): displacement of the contact point along e,
+//
+// and the largest eigenvalue of M_i^-1/2 A_i M_i^-1/2 over all bodies bounds the largest of M^-1 K; the same with cn, ct. q = m_i/m_j (kept between 1/3 and 3)
+// makes it exact for two spheres. A contact with a wall has b = 0 and weight 1.
+//
+// The bound can be half of the truth where neighbours cannot all move against a body at once. So a step that fails it is judged by the largest eigenvalues of the
+// whole themselves, found by power iteration (a Rayleigh quotient, which errs to the small side, and a margin).
+//
+// Before grains touch, the estimate adds contacts, evenly spread, up to the assumed coordination: a loose packing will become a dense one.
+
+#include "step/timestep.h"
+
+#include "base/alloc.h"
+#include "base/random.h"
+#include "math/eigen6.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const int iterations = 60;            ///< of the power method; its quotient is then within the margin for packings of any size tried
+static const double quotient_margin = 1.03;  ///< added to the quotient
+static const double near_gap = 0.05;        ///< of the radius: pairs nearer than this count as contacts before the first step
+static const double typical_overlap = 0.01; ///< of the radius: where a law whose stiffness vanishes at zero overlap is asked before grains touch
+
+typedef struct body_rates
+{
+    double stiffness[36], damping[36]; ///< M^-1/2 A M^-1/2 for K and C
+    int contacts;
+} body_rates;
+
+static double stable_dt(double stiffness, double damping)
+{
+    double c = 0.5 * damping, root = sqrt(stiffness + c * c) + c;
+    return root > 0.0 ? 2.0 / root : INFINITY;
+}
+
+/// Add weight (kn Jn^T Jn + kt sum of Jt^T Jt) to a matrix; rows of J scaled by the roots of inverse mass and moment.
+static void add_contact(double *a, int dimension, pls_vec3 n, double lever, double root_mass, double root_inertia, double kn, double kt)
+{
+    const double nn[3] = {n.x, n.y, n.z};
+    double row[4][6] = {{0}}; // along x, y, z and n
+    for (int e = 0; e < dimension; ++e)
+    {
+        pls_vec3 axis = pls_vec(e == 0, e == 1, e == 2), turn = pls_cross(n, axis);
+        const double t[3] = {turn.x, turn.y, turn.z};
+        row[e][e] = root_mass;
+        for (int c = dimension == 2 ? 2 : 0; c < 3; ++c) row[e][3 + c] = root_inertia * lever * t[c];
+        row[3][e] = root_mass * nn[e];
+    }
+    for (int r = 0; r < 6; ++r)
+        for (int c = 0; c < 6; ++c)
+        {
+            double all = row[0][r] * row[0][c] + row[1][r] * row[1][c] + row[2][r] * row[2][c], along = row[3][r] * row[3][c];
+            a[6 * r + c] += kn * along + kt * (all - along);
+        }
+}
+
+static double smallest_moment(const pls_body_mass *m, int dimension) { return dimension == 2 ? m->iz : fmin(m->ix, fmin(m->iy, m->iz)); }
+
+/// A contact as the estimate sees it.
+typedef struct joint
+{
+    uint32_t i, j; ///< rows
+    bool held;     ///< no force moves j
+    pls_vec3 n;
+    double lever_i, lever_j;
+    pls_contact_stiffness k;
+} joint;
+
+static joint joint_of(const pls_world *world, size_t c)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_bodies *b = &world->bodies;
+    const pls_pair_section *section = list->section;
+    while (c < section->first || c >= section->first + section->count) ++section;
+    joint t = {.i = list->row_i[c], .j = list->row_j[c]};
+    const pls_body_place *p = &b->place[t.i], *q = &b->place[t.j];
+    double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius;
+    if (section->wall)
+    {
+        t.n = pls_scale(pls_wall_normal(&b->orientation[t.j], world->def.dimension), -1.0);
+        delta = p->radius - (t.n.x * d[0] + t.n.y * d[1] + t.n.z * d[2]);
+        radius = p->radius;
+    }
+    else
+    {
+        for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
+        double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        t.n = pls_vec(d[0] / distance, d[1] / distance, d[2] / distance);
+        delta = p->radius + q->radius - distance;
+        radius = p->radius * q->radius / (p->radius + q->radius);
+        t.lever_j = q->radius - 0.5 * delta;
+    }
+    t.lever_i = p->radius - 0.5 * delta;
+    t.held = section->wall || q->inv_mass == 0.0;
+    const pls_law *law = &world->laws.law[section->law];
+    const double zeros[PLS_LAW_MAX_HISTORY] = {0};
+    pls_contact_point point = {.delta = fmax(delta, 0.0), .effective_radius = radius, .effective_mass = 1.0 / (p->inv_mass + q->inv_mass), .history = zeros};
+    law->ops->stiffness(law->constants, &point, &t.k);
+    return t;
+}
+
+static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, body_rates *rates)
+{
+    if (!pls_pair_touches(&world->list, entry >> 1)) return;
+    const pls_bodies *b = &world->bodies;
+    joint t = joint_of(world, entry >> 1);
+    uint32_t other = row == t.i ? t.j : t.i;
+    double m = b->mass[row].mass;
+    double ratio = b->place[other].inv_mass > 0.0 ? fmin(fmax(m / b->mass[other].mass, 1.0 / 3.0), 3.0) : 0.0;
+    double root_mass = 1.0 / sqrt(m), root_inertia = 1.0 / sqrt(smallest_moment(&b->mass[row], world->def.dimension));
+    double lever = row == t.i ? t.lever_i : t.lever_j, weight = 1.0 + ratio;
+    add_contact(rates->stiffness, world->def.dimension, t.n, lever, root_mass, root_inertia, weight * t.k.kn, weight * t.k.kt);
+    add_contact(rates->damping, world->def.dimension, t.n, lever, root_mass, root_inertia, weight * t.k.cn, weight * t.k.ct);
+    ++rates->contacts;
+}
+
+/// The stiffest contact a body's material can have with its like or another.
+static bool typical_contact(const pls_world *world, uint32_t row, pls_contact_stiffness *out)
+{
+    const pls_bodies *b = &world->bodies;
+    bool any = false;
+    *out = (pls_contact_stiffness){0};
+    double radius = b->place[row].radius;
+    for (size_t m = 0; m < world->laws.material_count; ++m)
+    {
+        uint16_t index = pls_law_table_find(&world->laws, b->kind[row].material, (uint16_t)m);
+        if (index == PLS_NO_LAW) continue;
+        const pls_law *law = &world->laws.law[index];
+        const double zeros[PLS_LAW_MAX_HISTORY] = {0};
+        pls_contact_point point = {.delta = typical_overlap * radius, .effective_radius = 0.5 * radius, .effective_mass = 0.5 * b->mass[row].mass, .history = zeros};
+        pls_contact_stiffness k;
+        law->ops->stiffness(law->constants, &point, &k);
+        out->kn = fmax(out->kn, k.kn), out->kt = fmax(out->kt, k.kt), out->cn = fmax(out->cn, k.cn), out->ct = fmax(out->ct, k.ct);
+        any = true;
+    }
+    return any;
+}
+
+/// Contacts that are missing to the assumed coordination, spread evenly over directions.
+static void add_missing(const pls_world *world, uint32_t row, int coordination, body_rates *rates)
+{
+    int missing = coordination - rates->contacts;
+    pls_contact_stiffness k;
+    if (missing <= 0 || !typical_contact(world, row, &k)) return;
+    const pls_bodies *b = &world->bodies;
+    int d = world->def.dimension;
+    double radius = b->place[row].radius, weight = 2.0 * missing;
+    double per_mass = weight / (d * b->mass[row].mass), per_inertia = weight * radius * radius / smallest_moment(&b->mass[row], d) * (d == 2 ? 1.0 : 2.0 / 3.0);
+    for (int a = 0; a < d; ++a)
+    {
+        rates->stiffness[7 * a] += per_mass * (k.kn + (d - 1) * k.kt);
+        rates->damping[7 * a] += per_mass * (k.cn + (d - 1) * k.ct);
+    }
+    for (int a = d == 2 ? 5 : 3; a < 6; ++a)
+    {
+        rates->stiffness[7 * a] += per_inertia * k.kt;
+        rates->damping[7 * a] += per_inertia * k.ct;
+    }
+    rates->contacts += missing;
+}
+
+static double trace(const double *a) { return a[0] + a[7] + a[14] + a[21] + a[28] + a[35]; }
+
+static body_rates rates_of(const pls_world *world, uint32_t row, int coordination)
+{
+    const pls_pair_list *list = &world->list;
+    body_rates rates = {.contacts = 0};
+    if (!world->memory_holds && list->count > 0)
+    {
+        for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k) add_from_list(world, row, list->pairs.entry[k], &rates);
+        for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k) add_from_list(world, row, list->walls.entry[k], &rates);
+    }
+    add_missing(world, row, coordination, &rates);
+    return rates;
+}
+
+/// The bound body by body.
+static void estimate(const pls_world *world, int coordination, pls_step_estimate *best)
+{
+    const pls_bodies *b = &world->bodies;
+    *best = (pls_step_estimate){.dt = INFINITY};
+    for (uint32_t number = 0; number < b->numbers; ++number)
+    {
+        uint32_t row = b->row_of[number];
+        if (row == PLS_NO_ROW || b->place[row].inv_mass == 0.0) continue;
+        body_rates rates = rates_of(world, row, coordination);
+        if (stable_dt(trace(rates.stiffness), trace(rates.damping)) >= best->dt) continue; // the trace bounds the largest eigenvalue
+        double stiffness = pls_largest_eigenvalue(rates.stiffness, 6), damping = pls_largest_eigenvalue(rates.damping, 6);
+        double dt = stable_dt(stiffness, damping);
+        if (!(dt < best->dt)) continue;
+        *best = (pls_step_estimate){.dt = dt, .stiffness = stiffness, .damping = damping, .body = number, .contacts = rates.contacts,
+                                    .damping_limits = damping > sqrt(stiffness)};
+    }
+}
+
+// ---- the whole: power iteration -------------------------------------------------------------------------------------------------------------------------
+
+typedef struct whole
+{
+    joint *joint;
+    size_t joints;
+    double *missing[2]; ///< per row: what contacts still to come add to translation and rotation, stiffness in [0], damping in [1]; two numbers each
+    double *root_mass, *root_inertia;
+    double *x, *y; ///< six numbers per row
+    size_t rows;
+} whole;
+
+static void whole_free(whole *w)
+{
+    pls_release(&w->joint);
+    pls_release(&w->missing[0]);
+    pls_release(&w->missing[1]);
+    pls_release(&w->root_mass);
+    pls_release(&w->root_inertia);
+    pls_release(&w->x);
+    pls_release(&w->y);
+}
+
+static pls_status whole_make(const pls_world *world, int coordination, whole *w)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_bodies *b = &world->bodies;
+    w->rows = b->count;
+    PLS_TRY(pls_allocate(&w->joint, pls_pair_list_touching(list), sizeof *w->joint, "contacts of the stable step"));
+    PLS_TRY(pls_allocate(&w->missing[0], 2 * w->rows, sizeof(double), "the stable step"));
+    PLS_TRY(pls_allocate(&w->missing[1], 2 * w->rows, sizeof(double), "the stable step"));
+    PLS_TRY(pls_allocate(&w->root_mass, w->rows, sizeof(double), "the stable step"));
+    PLS_TRY(pls_allocate(&w->root_inertia, w->rows, sizeof(double), "the stable step"));
+    PLS_TRY(pls_allocate(&w->x, 6 * w->rows, sizeof(double), "the stable step"));
+    PLS_TRY(pls_allocate(&w->y, 6 * w->rows, sizeof(double), "the stable step"));
+    for (size_t c = 0; c < list->count; ++c)
+        if (pls_pair_touches(list, c)) w->joint[w->joints++] = joint_of(world, c);
+    for (uint32_t row = 0; row < w->rows; ++row)
+    {
+        if (b->place[row].inv_mass == 0.0) continue;
+        w->root_mass[row] = 1.0 / sqrt(b->mass[row].mass);
+        w->root_inertia[row] = 1.0 / sqrt(smallest_moment(&b->mass[row], world->def.dimension));
+        body_rates with = rates_of(world, row, coordination), without = rates_of(world, row, 0);
+        w->missing[0][2 * row] = with.stiffness[0] - without.stiffness[0];
+        w->missing[0][2 * row + 1] = with.stiffness[35] - without.stiffness[35];
+        w->missing[1][2 * row] = with.damping[0] - without.damping[0];
+        w->missing[1][2 * row + 1] = with.damping[35] - without.damping[35];
+    }
+    return PLS_OK;
+}
+
+static pls_vec3 vec_at(const double *x) { return pls_vec(x[0], x[1], x[2]); }
+
+static void add_at(double *y, pls_vec3 a, double s) { y[0] += s * a.x, y[1] += s * a.y, y[2] += s * a.z; }
+
+/// y = M^-1/2 A M^-1/2 x, A the stiffness (damping = false) or the damping of all contacts.
+static void multiply_whole(const whole *w, bool damping, int dimension)
+{
+    const double *missing = w->missing[damping];
+    for (size_t row = 0; row < w->rows; ++row)
+        for (int a = 0; a < 6; ++a) w->y[6 * row + (size_t)a] = missing[2 * row + (a >= 3)] * w->x[6 * row + (size_t)a];
+    for (size_t m = 0; m < w->joints; ++m)
+    {
+        const joint *t = &w->joint[m];
+        double kn = damping ? t->k.cn : t->k.kn, kt = damping ? t->k.ct : t->k.kt;
+        const double *xi = w->x + 6 * (size_t)t->i, *xj = w->x + 6 * (size_t)t->j;
+        double mi = w->root_mass[t->i], ri = w->root_inertia[t->i] * t->lever_i, mj = w->root_mass[t->j], rj = w->root_inertia[t->j] * t->lever_j;
+        pls_vec3 turn = pls_scale(vec_at(xi + 3), ri), u = pls_scale(vec_at(xi), mi);
+        if (!t->held)
+        {
+            turn = pls_add(turn, pls_scale(vec_at(xj + 3), rj));
+            u = pls_sub(u, pls_scale(vec_at(xj), mj));
+        }
+        u = pls_add(u, pls_cross(turn, t->n));
+        double un = pls_dot(u, t->n);
+        pls_vec3 f = pls_add(pls_scale(u, kt), pls_scale(t->n, (kn - kt) * un)), torque = pls_cross(t->n, f);
+        if (dimension == 2) f.z = torque.x = torque.y = 0.0;
+        add_at(w->y + 6 * (size_t)t->i, f, mi);
+        add_at(w->y + 6 * (size_t)t->i + 3, torque, ri);
+        if (t->held) continue;
+        add_at(w->y + 6 * (size_t)t->j, f, -mj);
+        add_at(w->y + 6 * (size_t)t->j + 3, torque, rj);
+    }
+}
+
+static double largest_of_whole(const whole *w, const pls_bodies *b, bool damping, int dimension)
+{
+    for (size_t row = 0; row < w->rows; ++row)
+    {
+        pls_random random = pls_random_stream(0, b->kind[row].number, PLS_FOR_USER);
+        for (int a = 0; a < 6; ++a)
+        {
+            bool moves = w->root_mass[row] > 0.0 && (dimension == 3 || a < 2 || a == 5);
+            w->x[6 * row + (size_t)a] = moves ? pls_random_uniform(&random) - 0.5 : 0.0;
+        }
+    }
+    double quotient = 0.0;
+    for (int k = 0; k < iterations; ++k)
+    {
+        double xx = 0.0, xy = 0.0, yy = 0.0;
+        multiply_whole(w, damping, dimension);
+        for (size_t m = 0; m < 6 * w->rows; ++m) xx += w->x[m] * w->x[m], xy += w->x[m] * w->y[m], yy += w->y[m] * w->y[m];
+        if (!(yy > 0.0)) return 0.0;
+        quotient = xy / xx;
+        double scale = 1.0 / sqrt(yy);
+        for (size_t m = 0; m < 6 * w->rows; ++m) w->x[m] = scale * w->y[m];
+    }
+    return quotient_margin * quotient;
+}
+
+/// Judge a step that fails the bound by the eigenvalues of the whole.
+static pls_status refine(const pls_world *world, int coordination, pls_step_estimate *e)
+{
+    whole w = {0};
+    pls_status status = whole_make(world, coordination, &w);
+    if (status == PLS_OK)
+    {
+        double stiffness = largest_of_whole(&w, &world->bodies, false, world->def.dimension), damping = largest_of_whole(&w, &world->bodies, true, world->def.dimension);
+        double dt = stable_dt(stiffness, damping);
+        if (dt > e->dt) e->dt = dt, e->stiffness = stiffness, e->damping = damping, e->damping_limits = damping > sqrt(stiffness);
+    }
+    whole_free(&w);
+    return status;
+}
+
+/// Which candidates touch is known after the contact loop only; before it, take those that touch or nearly do (in a regular packing round-off decides which of
+/// a body's contacts exist).
+static void mark_near(pls_world *world)
+{
+    pls_pair_list *list = &world->list;
+    const pls_bodies *b = &world->bodies;
+    for (size_t s = 0; s < list->section_count; ++s)
+    {
+        const pls_pair_section *section = &list->section[s];
+        for (size_t c = section->first; c < section->first + section->count; ++c)
+        {
+            const pls_body_place *p = &b->place[list->row_i[c]], *q = &b->place[list->row_j[c]];
+            double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta;
+            if (section->wall)
+            {
+                pls_vec3 n = pls_wall_normal(&b->orientation[section->wall_row], world->def.dimension);
+                delta = p->radius + n.x * d[0] + n.y * d[1] + n.z * d[2];
+            }
+            else
+            {
+                for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
+                delta = p->radius + q->radius - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+            }
+            unsigned bit = 1u << (c & 7);
+            list->touch[c >> 3] = (uint8_t)(delta > -near_gap * fmin(p->radius, q->radius) ? list->touch[c >> 3] | bit : list->touch[c >> 3] & ~bit);
+        }
+    }
+}
+
+pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *out)
+{
+    if (!world->prepared)
+    {
+        PLS_TRY(pls_states_apply(world));
+        PLS_TRY(pls_neighbours_refresh(world));
+        mark_near(world);
+    }
+    estimate(world, world->def.coordination, out);
+    if (!world->prepared) memset(world->list.touch, 0, world->list.count / 8 + 1); // contacts begin with the first forces
+    return PLS_OK;
+}
+
+static pls_status refuse(const pls_world *world, const pls_step_estimate *e)
+{
+    char limit[160];
+    if (e->damping_limits)
+        snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping, sqrt(e->stiffness));
+    else snprintf(limit, sizeof limit, "its springs limit it: natural frequency %.4g 1/s, damping rate %.4g 1/s", sqrt(e->stiffness), e->damping);
+    return pls_fail(PLS_UNSTABLE_STEP,
+                    "the time step %g s is larger than the stable step %.4g s at t = %g s. Body %u with %d contacts sets it; %s. Take dt: auto or a smaller dt "
+                    "(or time.allow_unstable: true)",
+                    world->dt, e->dt, world->time, e->body, e->contacts, limit);
+}
+
+pls_status pls_choose_step(pls_world *world)
+{
+    pls_step_estimate e;
+    mark_near(world);
+    estimate(world, world->def.coordination, &e);
+    pls_status status = PLS_OK;
+    if (world->dt > e.dt && !world->def.allow_unstable)
+    {
+        status = refine(world, world->def.coordination, &e);
+        if (status == PLS_OK && world->dt > e.dt) status = refuse(world, &e);
+    }
+    memset(world->list.touch, 0, world->list.count / 8 + 1); // contacts begin with the first forces
+    PLS_TRY(status);
+    if (world->dt == 0.0)
+    {
+        if (!isfinite(e.dt))
+            return pls_fail(PLS_UNSTABLE_STEP, "no contact law limits the time step, so it cannot be chosen; give dt [s]");
+        world->dt = world->def.safety * e.dt;
+        return PLS_OK;
+    }
+    return PLS_OK;
+}
+
+pls_status pls_check_stable_step(pls_world *world)
+{
+    if (world->def.allow_unstable) return PLS_OK;
+    pls_step_estimate e;
+    estimate(world, 0, &e);
+    if (world->dt <= e.dt) return PLS_OK;
+    PLS_TRY(refine(world, 0, &e));
+    return world->dt <= e.dt ? PLS_OK : refuse(world, &e);
+}

@@ -1,0 +1,146 @@
+// velocity_verlet_simd.c -- velocity Verlet for bodies (P1 section 4.2.2), one body at a time, a row of four numbers per instruction.
+//
+//     begin    u = v + dt/2 a(t)        x += dt u        q <- rotation by dt u_w        v~ = u + dt/4 (a(t) + a(t - dt))
+//     finish   a = F/m                  v = u + dt/2 a
+//
+// v~ is the velocity at t + dt that laws see. Second order needs an estimate of a(t + dt/2 .. t + dt) there; the last acceleration alone would do, but halves the
+// step at which dashpots stay stable. The mean of the last two keeps the order and has the limit of the plain leapfrog, (2/w)(sqrt(1 + z^2) - z), for all damping
+// ratios z (docs/theory.md). u is not stored: finish takes it back from v~.
+//
+// Rotation: q <- (1, dt/2 w) q / |...|, the Cayley form of the exponential map: a rotation about w by 2 atan(|w| dt / 2), second order, unit by construction.
+// (P1 eq. 23 as printed lacks the old orientation.) Bodies with three different moments are advanced apart (rigid_rotation.c).
+
+#include "step/velocity_verlet.h"
+
+static const pls_v4i first_three = {-1, -1, -1, 0};
+
+static inline pls_v4 only_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a & first_three); }
+
+static inline void turn(pls_body_orientation *orientation, pls_v4 w, double half)
+{
+    double x = half * w[0], y = half * w[1], z = half * w[2];
+    double qw = orientation->w, qx = orientation->x, qy = orientation->y, qz = orientation->z;
+    pls_v4 q = {qw - x * qx - y * qy - z * qz, qx + x * qw + y * qz - z * qy, qy - x * qz + y * qw + z * qx, qz + x * qy - y * qx + z * qw};
+    double norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    pls_v4_store(&orientation->w, q / pls_v4_set(norm));
+}
+
+void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report)
+{
+    const double half = 0.5 * dt, quarter = 0.25 * dt;
+    pls_v4 largest = pls_v4_set(0.0), poison = pls_v4_set(0.0);
+    for (size_t row = first; row < last; ++row)
+    {
+        pls_body_place *p = &bodies->place[row];
+        pls_body_spin *s = &bodies->spin[row];
+        const pls_body_load *now = &bodies->load[row], *before = &bodies->load_before[row];
+        pls_v4 x = pls_v4_load(&p->x), v = pls_v4_load(&p->vx), w = pls_v4_load(&s->wx);
+        pls_v4 f = pls_v4_load(&now->fx), t = pls_v4_load(&now->tx);
+        pls_v4 a = only_first_three(f * p->inv_mass), b = only_first_three(t * s->inv_inertia);
+        pls_v4 a_before = only_first_three(pls_v4_load(&before->fx) * p->inv_mass);
+        pls_v4 b_before = only_first_three(pls_v4_load(&before->tx) * s->inv_inertia);
+
+        pls_v4 u = v + half * a, uw = w + half * b;
+        pls_v4 step = only_first_three(dt * u);
+        pls_v4_store(&p->x, x + step);
+        pls_v4_store(&p->vx, u + quarter * (a + a_before));
+        pls_v4_store(&s->wx, uw + quarter * (b + b_before));
+        turn(&bodies->orientation[row], uw, half);
+
+        pls_v4 square = step * step;
+        largest = pls_v4_pick((pls_v4i)(largest > square), largest, square);
+        poison += square * 0.0 + only_first_three(uw) * 0.0;
+    }
+    report->largest_square = largest[0] + largest[1] + largest[2];
+    report->poison = poison[0] + poison[1] + poison[2];
+}
+
+typedef struct gathered
+{
+    pls_v4 force, torque;
+    double power, work;
+} gathered;
+
+static inline void gather_pairs(const pls_pair_list *list, size_t row, double radius, gathered *g)
+{
+    enum { CHUNK = 64 };
+    uint32_t touching[CHUNK];
+    const uint32_t *entry = list->pairs.entry, end = list->pairs.start[row + 1];
+    for (uint32_t k = list->pairs.start[row]; k < end;)
+    {
+        uint32_t stop = end - k > CHUNK ? k + CHUNK : end, count = 0;
+        for (; k < stop; ++k) // no branch: which candidates touch is hard to foresee
+        {
+            touching[count] = entry[k];
+            count += (uint32_t)(list->touch[entry[k] >> 4] >> ((entry[k] >> 1) & 7)) & 1u;
+        }
+        for (uint32_t m = 0; m < count; ++m)
+        {
+            const double *slot = list->slot + (size_t)(touching[m] >> 1) * PLS_SLOT;
+            const int64_t sign = (int64_t)((uint64_t)touching[m] << 63);
+            pls_v4 low = pls_v4_load(slot), high = pls_v4_load(slot + 4);
+            g->force += (pls_v4)((pls_v4i)low ^ (pls_v4i){sign, sign, sign, sign});
+            g->torque += (radius - low[3]) * only_first_three(high);
+            const float *booked = (const float *)(slot + 7);
+            g->power += (double)booked[0];
+            g->work += (double)booked[1];
+        }
+    }
+}
+
+static inline void gather_walls(const pls_pair_list *list, size_t row, gathered *g)
+{
+    for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
+    {
+        uint32_t entry = list->walls.entry[k];
+        if (!pls_pair_touches(list, entry >> 1)) continue;
+        const double *slot = pls_wall_slot(list, entry >> 1);
+        pls_v4 force = pls_v4_load(slot);
+        if (entry & 1)
+        {
+            g->force -= force;
+            g->torque += pls_v4_load(slot + 8);
+        }
+        else
+        {
+            g->force += force;
+            g->torque += pls_v4_load(slot + 4);
+        }
+        g->power += slot[3];
+        g->work += slot[7];
+    }
+}
+
+void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, const pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
+                                 const double *torque)
+{
+    const double half = 0.5 * dt, quarter = 0.25 * dt;
+    for (size_t row = first; row < last; ++row)
+    {
+        pls_body_place *p = &bodies->place[row];
+        pls_body_spin *s = &bodies->spin[row];
+        const pls_body_load *now = &bodies->load[row];
+        pls_body_load *before = &bodies->load_before[row];
+        gathered g = {pls_v4_set(0.0), pls_v4_set(0.0), 0.0, 0.0};
+        if (force)
+        {
+            g.force = pls_v4_load(force + 4 * (row - first));
+            g.torque = pls_v4_load(torque + 4 * (row - first));
+        }
+        gather_pairs(list, row, p->radius, &g);
+        gather_walls(list, row, &g);
+
+        pls_v4 f = only_first_three(g.force), t = only_first_three(g.torque);
+        pls_v4 mean = only_first_three(pls_v4_load(&now->fx)) * p->inv_mass + only_first_three(pls_v4_load(&before->fx)) * p->inv_mass;
+        pls_v4 mean_turn = only_first_three(pls_v4_load(&now->tx)) * s->inv_inertia + only_first_three(pls_v4_load(&before->tx)) * s->inv_inertia;
+        pls_v4_store(&p->vx, pls_v4_load(&p->vx) - quarter * mean + half * (f * p->inv_mass));
+        pls_v4_store(&s->wx, pls_v4_load(&s->wx) - quarter * mean_turn + half * (t * s->inv_inertia));
+
+        double power = 0.5 * g.power; // half of each contact's dissipation to either body
+        bodies->energy_slid[row] += 0.5 * g.work;
+        f[3] = power;
+        t[3] = now->energy_damped + half * (now->damping_power + power);
+        pls_v4_store(&before->fx, f);
+        pls_v4_store(&before->tx, t);
+    }
+}

@@ -1,0 +1,149 @@
+// world.h -- the inside of a world, for the step room and those below it.
+#ifndef PLS_STEP_WORLD_H
+#define PLS_STEP_WORLD_H
+
+#include "contact/pair_list.h"
+#include "contact/sphere_contact.h"
+#include "law/law_table.h"
+#include "model/bodies.h"
+#include "model/domain.h"
+
+#include <particls/world.h>
+
+/// A shape with its numbers.
+typedef struct pls_shape_instance
+{
+    char name[PLS_NAME_SIZE];
+    const pls_shape_ops *ops;
+    double values[PLS_MAX_PARAMETERS];
+    double radius;                  ///< bounding radius [m], infinite if unbounded
+    pls_mass_properties properties; ///< at unit density and scale
+} pls_shape_instance;
+
+typedef struct pls_force_instance
+{
+    const pls_force_ops *ops;
+    void *context;
+} pls_force_instance;
+
+typedef struct pls_state_instance
+{
+    pls_state_def def;
+    size_t first;                      ///< its first value in `values`
+    pls_vec3 position, velocity, spin; ///< of its body before the drift
+} pls_state_instance;
+
+/// A law parameter or material value that follows a function of time and states.
+typedef struct pls_binding
+{
+    pls_parameter_function *function;
+    void *context;
+    void (*destroy)(void *);
+    uint16_t a, b;  ///< materials of the law; a: the material whose value follows, if `of_material`
+    bool of_material;
+    char name[PLS_NAME_SIZE];
+} pls_binding;
+
+/// A body advanced one by one: partly driven, driven by a function, or with three different moments.
+typedef struct pls_special
+{
+    uint32_t row;
+    pls_vec3 position, velocity, spin; ///< at the start of the step
+    pls_quat orientation;
+    pls_vec3 half_velocity; ///< u of velocity_verlet_simd.c
+    pls_vec3 half_spin;     ///< the same of rotation; for anisotropic bodies the angular momentum
+    pls_vec3 driven_velocity, driven_spin; ///< at the end of the step
+} pls_special;
+
+/// The skin's search for the cheapest value.
+typedef struct pls_skin_tuner
+{
+    double skin;       ///< in use [m]
+    double factor;     ///< next change
+    double last_cost;  ///< wall time per step with the last value [s]
+    double since;      ///< clock at the start of the window [s]
+    uint64_t steps;    ///< in the window
+    int builds;        ///< in the window
+} pls_skin_tuner;
+
+struct pls_world
+{
+    pls_world_def def;
+    pls_domain domain;
+    pls_bodies bodies;
+    pls_law_table laws;
+    pls_shape_instance *shape;
+    size_t shape_count, shape_capacity;
+    char (*group)[PLS_NAME_SIZE];
+    size_t group_count, group_capacity;
+    pls_motion_def *motion;
+    size_t motion_count, motion_capacity;
+    pls_force_instance *force;
+    size_t force_count, force_capacity;
+    pls_state_instance *state;
+    size_t state_count, state_capacity;
+    double *state_value, *state_half, *state_rate; ///< values of all states; scratch
+    size_t value_count, value_capacity;
+    pls_binding *binding;
+    size_t binding_count, binding_capacity;
+
+    pls_pair_list list;
+    pls_contact_memory memory; ///< filled when the list is about to change
+    bool memory_holds;         ///< `memory`, not the list, has the contacts (between a change of bodies and the next list)
+    pls_contact_work *work;    ///< one per thread
+    int work_count;
+    pls_skin_tuner tuner;
+    pls_special *special;
+    size_t special_count, special_capacity;
+    bool special_stale;
+
+    double dt;         ///< 0 until chosen
+    uint64_t step;     ///< steps done
+    double time;       ///< step * dt
+    bool prepared;
+    double extent;     ///< size of the first arrangement [m], for lost bodies; 0 until measured
+    pls_vec3 centre;   ///< of the first arrangement [m]
+    void *persisting;  ///< contact table while persist.c reads it
+};
+
+// motion.c
+/// Give driven bodies their velocities of now.
+pls_status pls_special_start(pls_world *world);
+pls_status pls_special_before(pls_world *world);
+pls_status pls_special_drift(pls_world *world);
+void pls_special_finish(pls_world *world);
+pls_status pls_find_specials(pls_world *world);
+
+// state_rk2.c
+void pls_states_before(pls_world *world);
+pls_status pls_states_advance(pls_world *world);
+pls_status pls_states_apply(pls_world *world);
+
+// neighbours.c
+/// Note how far bodies may have moved in this step.
+void pls_neighbours_moved(pls_world *world, double largest_square);
+pls_status pls_neighbours_refresh(pls_world *world);
+/// Move what contacts remember out of the list, before bodies, laws or rows change.
+pls_status pls_neighbours_detach(pls_world *world);
+
+// step.c
+/// Size and centre of the arrangement of now.
+pls_status pls_measure_extent(pls_world *world);
+/// Go on stepping from a restored state, without computing forces anew.
+pls_status pls_world_resume(pls_world *world);
+
+// forces.c
+pls_status pls_body_forces(const pls_world *world, size_t first, size_t last, double time, double *scratch, double *force, double *torque);
+enum { PLS_FORCE_SCRATCH = 11 * PLS_FORCE_BATCH + 2 * PLS_FORCE_BATCH + 6 * PLS_FORCE_BATCH }; ///< doubles
+
+// guard.c
+pls_status pls_guard_finite(pls_world *world);
+pls_status pls_guard_overlap(pls_world *world);
+pls_status pls_guard_step(pls_world *world);
+
+/// Scale a body: radius, and mass and inertia if it keeps its density. NaN or not positive: INVALID_ARGUMENT.
+pls_status pls_body_rescale(pls_world *world, uint32_t row, double scale, bool keep_density);
+/// Row of a body, PLS_NO_ROW if the id is stale.
+uint32_t pls_body_row(const pls_world *world, pls_body_id id);
+
+#endif
