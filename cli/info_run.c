@@ -97,11 +97,18 @@ static void print_frames(const char *directory)
     free_files(&list);
 }
 
-/// Newest first; `*time` is that of the newest good one, NaN when there is none.
-static void print_checkpoints(const char *directory, double *time)
+/// The newest good checkpoint.
+typedef struct newest
+{
+    double time; ///< [s], NaN when there is none
+    bool at_end; ///< of what was asked for
+} newest;
+
+/// Newest first.
+static void print_checkpoints(const char *directory, const pls_scene *scene, newest *good)
 {
     pls_checkpoint_list list = {0};
-    *time = NAN;
+    *good = (newest){.time = NAN};
     if (pls_checkpoint_list_make(&list, directory) != PLS_OK) cli_failed(CLI_FAILED);
     printf("checkpoints        %9zu\n", list.count);
     for (size_t k = 0; k < list.count; ++k)
@@ -114,7 +121,11 @@ static void print_checkpoints(const char *directory, double *time)
             continue;
         }
         printf("  %-24s t = %.9g s, good\n", base_name(path), checkpoint.header.time);
-        if (isnan(*time)) *time = checkpoint.header.time;
+        if (isnan(good->time))
+        {
+            double end = pls_run_end_of(&checkpoint, scene);
+            *good = (newest){checkpoint.header.time, pls_run_reached(checkpoint.header.time, checkpoint.header.dt, end)};
+        }
         pls_checkpoint_close(&checkpoint);
     }
     pls_checkpoint_list_free(&list);
@@ -123,16 +134,15 @@ static void print_checkpoints(const char *directory, double *time)
 static int describe(const char *directory, const pls_scene *scene)
 {
     const char *title = pls_scene_title(scene);
-    double end = pls_scene_end_time(scene);
-    double time;
-    bool finished = pls_run_summary_says_finished(directory);
+    newest good;
     printf("run directory      %s\n", directory);
     if (title && *title) printf("title              %s\n", title);
-    printf("state              %s\n", finished ? "finished" : "not finished: particls resume goes on");
     print_series(directory);
     print_frames(directory);
-    print_checkpoints(directory, &time);
-    if (!isnan(time)) printf("saved up to        t = %.9g of %.9g s\n", time, finished ? time : end);
+    print_checkpoints(directory, scene, &good);
+    if (!isnan(good.time)) printf("saved up to        t = %.9g s\n", good.time);
+    bool finished = good.at_end && pls_run_summary_says_finished(directory);
+    printf("state              %s\n", finished ? "finished" : "not finished: particls resume goes on");
     return CLI_DONE;
 }
 

@@ -16,8 +16,8 @@ static const cli_option options[] = {
     {0},
 };
 
-/// Where the public headers are, seen from the folder of the program: when installed, and in a build tree.
-static const char *const places[] = {"../include", "../../../include"};
+/// Where the public headers are, seen from the folder of the program: when installed, and in build trees.
+static const char *const places[] = {"../include", "../../include", "../../../include"};
 
 /// Find the headers; false when they are not there.
 static bool find_headers(char folder[PATH_MAX])

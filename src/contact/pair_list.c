@@ -150,20 +150,22 @@ static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
         list->section[s].history = history;
         history += (list->section[s].count + 7) / 8 * 8 * (size_t)list->section[s].stride;
     }
-    size_t capacity = list->capacity;
-    PLS_TRY(pls_reserve(&list->row_i, &capacity, count, sizeof *list->row_i, "the pair list"));
+    size_t capacity = list->capacity, reach = count + PLS_PAIR_REACH;
+    PLS_TRY(pls_reserve(&list->row_i, &capacity, reach, sizeof *list->row_i, "the pair list"));
     capacity = list->capacity;
-    PLS_TRY(pls_reserve(&list->row_j, &capacity, count, sizeof *list->row_j, "the pair list"));
+    PLS_TRY(pls_reserve(&list->row_j, &capacity, reach, sizeof *list->row_j, "the pair list"));
     list->capacity = capacity;
     if (periodic) PLS_TRY(pls_reserve(&list->shift, &list->shift_capacity, count, sizeof *list->shift, "the images of pairs"));
     PLS_TRY(pls_reserve(&list->touch, &list->touch_capacity, count / 8 + 1, 1, "the touching pairs"));
+    PLS_TRY(pls_reserve(&list->ended, &list->ended_capacity, count / 8 + 1, 1, "the pairs that part"));
     PLS_TRY(pls_reserve(&list->history, &list->history_capacity, history, sizeof *list->history, "the history of contacts"));
     size_t slots = list->wall_first * PLS_SLOT + (count - list->wall_first) * PLS_WALL_SLOT;
     PLS_TRY(pls_reserve(&list->slot, &list->slot_capacity, slots, sizeof *list->slot, "the forces of contacts"));
     memset(list->touch, 0, count / 8 + 1);
+    memset(list->ended, 0, count / 8 + 1);
+    memset(list->row_i, 0, reach * sizeof *list->row_i);
+    memset(list->row_j, 0, reach * sizeof *list->row_j);
     if (count == 0) return PLS_OK;
-    memset(list->row_i, 0, count * sizeof *list->row_i);
-    memset(list->row_j, 0, count * sizeof *list->row_j);
     if (periodic) memset(list->shift, 0, count * sizeof *list->shift);
     return PLS_OK;
 }
@@ -347,6 +349,19 @@ static pls_status keep_reference(pls_pair_list *list, const pls_bodies *bodies)
     return PLS_OK;
 }
 
+/// Nothing is known of which entries touch: every row is stale.
+static pls_status forget_touching_entries(pls_pair_list *list, size_t rows)
+{
+    PLS_TRY(pls_reserve(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + 1, sizeof *list->near_entry, "touching entries"));
+    size_t capacity = list->near_capacity;
+    PLS_TRY(pls_reserve(&list->near_count, &capacity, rows, sizeof *list->near_count, "touching entries"));
+    capacity = list->near_capacity;
+    PLS_TRY(pls_reserve(&list->near_stale, &capacity, rows, sizeof *list->near_stale, "touching entries"));
+    list->near_capacity = capacity;
+    memset(list->near_stale, 1, rows);
+    return PLS_OK;
+}
+
 static pls_status lay_out(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double skin,
                           const pls_near_pairs *near, wall_pairs *found, size_t *next)
 {
@@ -374,6 +389,7 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
     if (status == PLS_OK) status = put_back(list, bodies, laws, memory);
     if (status == PLS_OK) status = gather_rows(&list->pairs, list, bodies, false);
     if (status == PLS_OK) status = gather_rows(&list->walls, list, bodies, true);
+    if (status == PLS_OK) status = forget_touching_entries(list, bodies->count);
     if (status == PLS_OK) status = keep_reference(list, bodies);
     if (status != PLS_OK)
     {
@@ -392,9 +408,9 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
 
 size_t pls_pair_list_bytes(const pls_pair_list *list)
 {
-    return list->capacity * 2 * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift + list->touch_capacity +
+    return list->capacity * 2 * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift + list->touch_capacity + list->ended_capacity +
            (list->history_capacity + list->slot_capacity) * sizeof(double) +
-           (list->pairs.entry_capacity + list->walls.entry_capacity) * sizeof *list->pairs.entry;
+           (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_entry_capacity) * sizeof *list->pairs.entry;
 }
 
 void pls_pair_list_free(pls_pair_list *list)
@@ -405,12 +421,16 @@ void pls_pair_list_free(pls_pair_list *list)
     pls_release(&list->row_j);
     pls_release(&list->shift);
     pls_release(&list->touch);
+    pls_release(&list->ended);
     pls_release(&list->history);
     pls_release(&list->slot);
     pls_release(&list->pairs.start);
     pls_release(&list->pairs.entry);
     pls_release(&list->walls.start);
     pls_release(&list->walls.entry);
+    pls_release(&list->near_entry);
+    pls_release(&list->near_count);
+    pls_release(&list->near_stale);
     pls_release(&list->reference);
     pls_release(&list->reference_radius);
     memset(list, 0, sizeof *list);

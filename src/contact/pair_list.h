@@ -16,6 +16,7 @@
 enum
 {
     PLS_CONTACT_BLOCK = PLS_LAW_BATCH, ///< candidates per block of work: its arrays stay in the first-level cache
+    PLS_PAIR_REACH = 64,               ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
     PLS_SLOT = 8,            ///< doubles in the slot of a sphere pair: F (3), delta/2, n x Ft (3), booked power and work
     PLS_WALL_SLOT = 16,      ///< doubles in the slot of a wall pair: F (3), power, torque on i (3), work, torque on the wall (3), spare
     PLS_SPRING_STRIDE = 4    ///< doubles of history when the law keeps at most one number besides the spring; twice that otherwise
@@ -63,12 +64,17 @@ typedef struct pls_pair_list
     int16_t (*shift)[4]; ///< periodic images: j's image lies at X_j + shift * edge; only in periodic worlds
     size_t shift_capacity;
     uint8_t *touch;      ///< bit k % 8 of byte k / 8: candidate k touched at the last step
-    size_t touch_capacity;
+    uint8_t *ended;      ///< likewise: touched at the step before the last and no more at the last; their history still holds the spring
+    size_t touch_capacity, ended_capacity;
     double *history;
     size_t history_capacity;
     double *slot; ///< PLS_SLOT per sphere pair, then PLS_WALL_SLOT per wall pair
     size_t slot_capacity;
     pls_gather_rows pairs, walls;
+    uint32_t *near_entry; ///< the touching entries of each row of `pairs`, in order, from the row's start
+    uint32_t *near_count; ///< how many
+    uint8_t *near_stale;  ///< 1 where contacts of the row began or ended since they were listed
+    size_t near_entry_capacity, near_capacity;
 
     // when it is stale
     double (*reference)[3]; ///< positions when it was made [m]

@@ -13,7 +13,7 @@ typedef struct pls_contact_work
     _Alignas(64) double lever[PLS_CONTACT_BLOCK];     ///< sphere pairs: delta/2; walls: distance of the contact point from the centre of i [m]
     _Alignas(64) double normal_velocity[PLS_CONTACT_BLOCK];
     _Alignas(64) double slip_velocity[3][PLS_CONTACT_BLOCK];
-    _Alignas(64) double spin[PLS_CONTACT_BLOCK]; ///< tan of a quarter of the angle the contact frame turns about n in this step
+    _Alignas(64) double turn[2][PLS_CONTACT_BLOCK]; ///< cosine and sine of half the angle the contact frame turns about n in this step
     _Alignas(64) double effective_radius[PLS_CONTACT_BLOCK];
     _Alignas(64) double effective_mass[PLS_CONTACT_BLOCK];
     _Alignas(64) double spring[3][PLS_CONTACT_BLOCK];
@@ -41,6 +41,9 @@ typedef struct pls_contact_input
 } pls_contact_input;
 
 PLS_SIMD_DECLARE(void, pls_contact_block, pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block, pls_contact_work *work);
+
+/// For each set of lanes (a byte) their numbers, packed to the front.
+extern const uint8_t pls_packed_lanes[256][8];
 
 /// Outward normal of a half-space.
 pls_vec3 pls_wall_normal(const pls_body_orientation *orientation, int dimension);

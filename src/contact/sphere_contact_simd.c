@@ -19,9 +19,16 @@
 
 #include <string.h>
 
-static const pls_v4i sign_of_first_three = {INT64_MIN, INT64_MIN, INT64_MIN, 0};
+enum { FETCH_AHEAD = 48 }; ///< candidates; within PLS_PAIR_REACH
 
-static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ sign_of_first_three); }
+static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}); }
+
+/// X_j - X_i, r_i + r_j | v_i - v_j, 1/m_i + 1/m_j from two rows.
+static inline pls_v8 pair_row(const pls_body_place *i, const pls_body_place *j)
+{
+    const pls_v8i of_i = {INT64_MIN, INT64_MIN, INT64_MIN, 0, 0, 0, 0, 0}, of_j = {0, 0, 0, 0, INT64_MIN, INT64_MIN, INT64_MIN, 0};
+    return (pls_v8)((pls_v8i)pls_v8_load(&j->x) ^ of_j) + (pls_v8)((pls_v8i)pls_v8_load(&i->x) ^ of_i);
+}
 
 static inline pls_v4 image_shift(const pls_pair_list *list, size_t c, pls_v4 edge)
 {
@@ -34,9 +41,16 @@ static inline pls_v4 image_shift(const pls_pair_list *list, size_t c, pls_v4 edg
 /// Note the touching lanes of candidates c .. c + 7 and clear the history of those that begin.
 static inline void note_touching(pls_pair_list *list, const pls_pair_section *section, size_t c, unsigned now, pls_contact_work *work)
 {
-    unsigned before = list->touch[c >> 3], fresh = now & ~before;
+    unsigned before = list->touch[c >> 3], fresh = now & ~before, changed = now ^ before;
     list->touch[c >> 3] = (uint8_t)now;
-    while (fresh)
+    list->ended[c >> 3] = (uint8_t)(before & ~now);
+    for (; changed && !section->wall; changed &= changed - 1) // seldom
+    {
+        size_t m = c + (size_t)__builtin_ctz(changed);
+        __atomic_store_n(&list->near_stale[list->row_i[m]], 1, __ATOMIC_RELAXED); // two threads may say the same
+        __atomic_store_n(&list->near_stale[list->row_j[m]], 1, __ATOMIC_RELAXED);
+    }
+    while (fresh) // seldom
     {
         unsigned lane = (unsigned)__builtin_ctz(fresh);
         fresh &= fresh - 1;
@@ -44,12 +58,22 @@ static inline void note_touching(pls_pair_list *list, const pls_pair_section *se
         double *history = list->history + section->history + (c + lane - section->first) * (size_t)section->stride;
         memset(history, 0, (size_t)section->stride * sizeof *history);
     }
+    // No branch on which lanes touch: all eight places are written, the next batch overwrites what is too many.
     uint32_t *active = work->active + work->active_count;
+    const uint8_t *lane = pls_packed_lanes[now];
+    for (int k = 0; k < 8; ++k) active[k] = (uint32_t)c + lane[k];
     work->active_count += (size_t)__builtin_popcount(now);
-    while (now)
+}
+
+/// Fetch what the touching candidates will need into the cache while the filter's end and the first loads run.
+static inline void fetch_ahead(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_contact_work *work)
+{
+    for (size_t k = 0; k < work->active_count; ++k)
     {
-        *active++ = (uint32_t)(c + (size_t)__builtin_ctz(now));
-        now &= now - 1;
+        size_t c = work->active[k];
+        __builtin_prefetch(list->history + section->history + (c - section->first) * (size_t)section->stride, 1);
+        __builtin_prefetch(section->wall ? pls_wall_slot(list, c) : list->slot + c * PLS_SLOT, 1);
+        __builtin_prefetch(&in->spin[list->row_j[c]]);
     }
 }
 
@@ -66,9 +90,11 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
     {
         size_t c = block->first + k;
         unsigned now = 0;
+        for (int lane = 0; lane < 8; ++lane) __builtin_prefetch(&in->place[list->row_j[c + FETCH_AHEAD + (size_t)lane]]);
         for (int half = 0; half < 8; half += PLS_W)
         {
             pls_v4 row[PLS_W];
+#pragma GCC unroll 8
             for (int lane = 0; lane < PLS_W; ++lane)
             {
                 size_t m = c + (size_t)(half + lane);
@@ -92,33 +118,39 @@ typedef struct frame
 } frame;
 
 /// Normal and tangential velocity, and the spring in the frame of now.
-static inline void set_frame(pls_contact_work *work, size_t k, const frame *f, const pls_contact_input *in)
+static inline __attribute__((always_inline)) void set_frame(pls_contact_work *work, size_t k, const frame *f, const pls_contact_input *in)
 {
     const pls_vd zero = pls_vd_set(0.0), one = pls_vd_set(1.0);
     pls_vd vn = f->v[0] * f->n[0] + f->v[1] * f->n[1] + f->v[2] * f->n[2];
     pls_vd vt[3], t[3];
     for (int a = 0; a < 3; ++a) vt[a] = f->v[a] - vn * f->n[a];
 
+    // Projected on the tangent plane the spring loses sn of its length; |s|/|t| = sqrt(1 + e), e = sn^2/|t|^2, tiny: the plane turns little in a step.
     const pls_vd *s = f->spring;
     pls_vd sn = s[0] * f->n[0] + s[1] * f->n[1] + s[2] * f->n[2];
     for (int a = 0; a < 3; ++a) t[a] = s[a] - sn * f->n[a];
-    pls_vd whole = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], part = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
+    pls_vd part = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
     pls_vi some = (pls_vi)(part > zero);
-    pls_vd keep = pls_vd_sqrt(pls_vd_pick(some, whole, one) / pls_vd_pick(some, part, one));
+    pls_vd e = sn * sn / pls_vd_pick(some, part, one);
+    e = pls_vd_pick((pls_vi)(e > one), one, e);
+    pls_vd keep = one + e * (0.5 - 0.125 * e);
 
-    pls_vd a = (0.25 * in->dt) * f->spin, inv = one / (one + a * a);
-    pls_vd cosine = keep * (one - a * a) * inv, sine = keep * (2.0 * a) * inv;
+    // Half the turn of the frame: sine and cosine of dt/2 times the spin, as series; a contact turns by far less than a radian in a step.
+    pls_vd a = (0.5 * in->dt) * f->spin, square = a * a;
+    pls_vd cosine = one - square * (0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0)));
+    pls_vd sine = a * (one - square * (1.0 / 6.0 - square * (1.0 / 120.0 - square * (1.0 / 5040.0))));
     pls_vd turned[3] = {cosine * t[0] + sine * (f->n[1] * t[2] - f->n[2] * t[1]), cosine * t[1] + sine * (f->n[2] * t[0] - f->n[0] * t[2]),
                         cosine * t[2] + sine * (f->n[0] * t[1] - f->n[1] * t[0])};
     for (int c = 0; c < 3; ++c)
     {
         pls_vd_store(&work->normal[c][k], f->n[c]);
         pls_vd_store(&work->slip_velocity[c][k], vt[c]);
-        pls_vd_store(&work->spring[c][k], turned[c] + in->dt_before * vt[c]);
+        pls_vd_store(&work->spring[c][k], keep * turned[c] + in->dt_before * vt[c]);
     }
     pls_vd_store(&work->delta[k], f->delta);
     pls_vd_store(&work->normal_velocity[k], vn);
-    pls_vd_store(&work->spin[k], a);
+    pls_vd_store(&work->turn[0][k], cosine);
+    pls_vd_store(&work->turn[1][k], sine);
 }
 
 static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
@@ -127,29 +159,26 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
     const pls_v4 edge_rate = {in->domain->edge_rate[0], in->domain->edge_rate[1], in->domain->edge_rate[2], 0.0};
     const pls_vd one = pls_vd_set(1.0);
+    const size_t stride = (size_t)section->stride;
+    const double *history = list->history + section->history - section->first * stride; // of candidate 0
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_v4 low[PLS_W], high[PLS_W], turn[PLS_W], sum[PLS_W], spring[PLS_W];
+        pls_v8 place[PLS_W], turn[PLS_W];
+        pls_v4 spring[PLS_W];
+#pragma GCC unroll 8
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = work->active[k + (size_t)lane];
-            uint32_t i = list->row_i[c], j = list->row_j[c];
-            pls_v4 xi = pls_v4_load(&in->place[i].x), xj = pls_v4_load(&in->place[j].x);
-            pls_v4 wi = pls_v4_load(&in->spin[i].wx), wj = pls_v4_load(&in->spin[j].wx);
-            low[lane] = xj + flip_first_three(xi);
-            high[lane] = pls_v4_load(&in->place[i].vx) + flip_first_three(pls_v4_load(&in->place[j].vx));
-            if (periodic)
-            {
-                low[lane] += image_shift(list, c, edge);
-                high[lane] -= image_shift(list, c, edge_rate);
-            }
-            turn[lane] = xi[3] * wi + xj[3] * wj;
-            sum[lane] = wi + wj;
-            spring[lane] = pls_v4_load(list->history + section->history + (c - section->first) * (size_t)section->stride);
+            const pls_body_place *i = &in->place[list->row_i[c]], *j = &in->place[list->row_j[c]];
+            pls_v4 wi = pls_v4_load(&in->spin[list->row_i[c]].wx), wj = pls_v4_load(&in->spin[list->row_j[c]].wx);
+            place[lane] = pair_row(i, j);
+            if (periodic) place[lane] += pls_v8_join(image_shift(list, c, edge), -image_shift(list, c, edge_rate));
+            turn[lane] = pls_v8_join(i->radius * wi + j->radius * wj, wi + wj);
+            spring[lane] = pls_v4_load(history + c * stride);
         }
         pls_vd d[8], w[8], s[4];
-        pls_columns8(low, high, d);
-        pls_columns8(turn, sum, w);
+        pls_columns8(place, d);
+        pls_columns8(turn, w);
         pls_columns4(spring, s);
 
         pls_vd distance = pls_vd_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inv = one / distance;
@@ -187,8 +216,7 @@ static inline int lanes_left(const pls_contact_work *work, size_t k)
 /// Spring (and the law's own numbers) back to the history, the spring half a step and half a turn ahead.
 static inline void store_history(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, size_t k, int kept)
 {
-    const pls_vd one = pls_vd_set(1.0);
-    pls_vd n[3], s[3], a = pls_vd_load(&work->spin[k]), inv = one / (one + a * a), cosine = (one - a * a) * inv, sine = (2.0 * a) * inv;
+    pls_vd n[3], s[3], cosine = pls_vd_load(&work->turn[0][k]), sine = pls_vd_load(&work->turn[1][k]);
     for (int c = 0; c < 3; ++c)
     {
         n[c] = pls_vd_load(&work->normal[c][k]);
@@ -198,8 +226,10 @@ static inline void store_history(pls_pair_list *list, const pls_contact_input *i
                         cosine * s[2] + sine * (n[0] * s[1] - n[1] * s[0]), kept > 0 ? pls_vd_load(&work->history[0][k]) : pls_vd_set(0.0)};
     double *row[PLS_W];
     int lanes = lanes_left(work, k);
-    for (int lane = 0; lane < PLS_W; ++lane)
-        row[lane] = list->history + section->history + (work->active[k + (size_t)lane] - section->first) * (size_t)section->stride;
+    const size_t stride = (size_t)section->stride;
+    double *history = list->history + section->history - section->first * stride; // of candidate 0
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane) row[lane] = history + work->active[k + (size_t)lane] * stride;
     pls_rows4(column, row, lanes);
     for (int h = 1; h < kept; ++h)
         for (int lane = 0; lane < lanes; ++lane) row[lane][3 + h] = work->history[h][k + (size_t)lane];
@@ -222,6 +252,7 @@ static inline void store_pairs(pls_pair_list *list, const pls_contact_input *in,
         column[6] = n[0] * ft[1] - n[1] * ft[0];
         column[7] = pls_vd_pack(pls_vd_load(&work->damping_power[k]), pls_vd_load(&work->slip_work[k]));
         double *row[PLS_W];
+#pragma GCC unroll 8
         for (int lane = 0; lane < PLS_W; ++lane) row[lane] = list->slot + (size_t)work->active[k + (size_t)lane] * PLS_SLOT;
         pls_rows8(column, row, lanes_left(work, k));
         store_history(list, in, section, work, k, kept);
@@ -268,18 +299,18 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
 {
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_v4 low[PLS_W], high[PLS_W], turn[PLS_W], spring[PLS_W];
+        pls_v8 place[PLS_W];
+        pls_v4 turn[PLS_W], spring[PLS_W];
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = work->active[k + (size_t)lane];
             uint32_t i = list->row_i[c];
-            low[lane] = pls_v4_load(&in->place[i].x);
-            high[lane] = pls_v4_load(&in->place[i].vx);
+            place[lane] = pls_v8_load(&in->place[i].x);
             turn[lane] = pls_v4_load(&in->spin[i].wx);
             spring[lane] = pls_v4_load(list->history + section->history + (c - section->first) * (size_t)section->stride);
         }
         pls_vd d[8], w[4], s[4], x[3], arm[3], height = pls_vd_set(0.0);
-        pls_columns8(low, high, d);
+        pls_columns8(place, d);
         pls_columns4(turn, w);
         pls_columns4(spring, s);
         for (int a = 0; a < 3; ++a)
@@ -374,7 +405,7 @@ static void apply_law(const pls_law *law, const pls_contact_input *in, pls_conta
 {
     pls_law_batch batch = {
         .count = (work->active_count + 7) / 8 * 8,
-        .dt = in->dt,
+        .dt = 2.0 * in->dt_before, // at the start of a run no time has passed, and nothing has slid
         .constants = law->constants,
         .delta = work->delta,
         .normal_velocity = work->normal_velocity,
@@ -412,6 +443,7 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
     else if (in->domain->any_periodic) filter_pairs(list, in, section, block, work, 1);
     else filter_pairs(list, in, section, block, work, 0);
     if (work->active_count == 0) return;
+    fetch_ahead(list, in, section, work);
     for (size_t k = work->active_count; k % 8 != 0; ++k) work->active[k] = work->active[work->active_count - 1]; // padding repeats a contact
 
     if (section->wall) load_walls(list, in, section, work, &wall);

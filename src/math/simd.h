@@ -48,12 +48,17 @@ typedef int64_t pls_vi __attribute__((vector_size(8 * PLS_W)));  ///< masks and 
 typedef float pls_vf __attribute__((vector_size(4 * PLS_W)));    ///< PLS_W floats
 typedef double pls_v4 __attribute__((vector_size(32)));          ///< half a body row: three components and one more
 typedef int64_t pls_v4i __attribute__((vector_size(32)));
-typedef double pls_v2 __attribute__((vector_size(16)));
+typedef double pls_v8 __attribute__((vector_size(64)));          ///< a row of a cache line
+typedef int64_t pls_v8i __attribute__((vector_size(64)));
 
 static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
 static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }
 static inline pls_v4 pls_v4_load(const double *p) { return *(const pls_v4 *)p; }
 static inline void pls_v4_store(double *p, pls_v4 a) { *(pls_v4 *)p = a; }
+static inline pls_v8 pls_v8_load(const double *p) { return *(const pls_v8 *)p; }
+static inline pls_v8 pls_v8_join(pls_v4 low, pls_v4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
+static inline pls_v4 pls_v8_low(pls_v8 a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+static inline pls_v4 pls_v8_high(pls_v8 a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
 static inline pls_vd pls_vd_set(double a) { return (pls_vd){0} + a; }
 static inline pls_v4 pls_v4_set(double a) { return (pls_v4){a, a, a, a}; }
 /// mask ? a : b, mask all ones or all zeros per lane.
@@ -157,6 +162,16 @@ static inline void pls_rows4(const pls_vd column[4], double *const *row, int cou
     pls_vd d = __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15);
     pls_vd p[4] = {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13), __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
                    __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15), __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+    if (count == PLS_W)
+    {
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k)
+        {
+            pls_v4_store(row[k], __builtin_shufflevector(p[k], p[k], 0, 1, 2, 3));
+            pls_v4_store(row[k + 4], __builtin_shufflevector(p[k], p[k], 4, 5, 6, 7));
+        }
+        return;
+    }
     for (int k = 0; k < 4 && k < count; ++k) pls_v4_store(row[k], __builtin_shufflevector(p[k], p[k], 0, 1, 2, 3));
     for (int k = 4; k < count; ++k) pls_v4_store(row[k], __builtin_shufflevector(p[k - 4], p[k - 4], 4, 5, 6, 7));
 #elif PLS_W == 4
@@ -168,13 +183,15 @@ static inline void pls_rows4(const pls_vd column[4], double *const *row, int cou
 #endif
 }
 
-/// PLS_W rows of eight, each given as two halves, to eight columns.
-static inline void pls_columns8(const pls_v4 *low, const pls_v4 *high, pls_vd column[8])
+/// PLS_W rows of eight to eight columns.
+static inline void pls_columns8(const pls_v8 *row, pls_vd column[8])
 {
 #if PLS_W == 8
-    for (int k = 0; k < 8; ++k) column[k] = __builtin_shufflevector(low[k], high[k], 0, 1, 2, 3, 4, 5, 6, 7);
+    for (int k = 0; k < 8; ++k) column[k] = row[k];
     pls_transpose8_(column);
 #else
+    pls_v4 low[PLS_W], high[PLS_W];
+    for (int k = 0; k < PLS_W; ++k) low[k] = pls_v8_low(row[k]), high[k] = pls_v8_high(row[k]);
     pls_columns4(low, column);
     pls_columns4(high, column + 4);
 #endif
@@ -187,6 +204,12 @@ static inline void pls_rows8(const pls_vd column[8], double *const *row, int cou
     pls_vd t[8];
     for (int k = 0; k < 8; ++k) t[k] = column[k];
     pls_transpose8_(t);
+    if (count == PLS_W)
+    {
+#pragma GCC unroll 8
+        for (int k = 0; k < PLS_W; ++k) pls_vd_store(row[k], t[k]);
+        return;
+    }
     for (int k = 0; k < count; ++k) pls_vd_store(row[k], t[k]);
 #else
     double *high[PLS_W];

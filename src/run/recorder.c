@@ -300,7 +300,7 @@ static pls_status remove_later_frame(void *context, const char *path, const char
 
 static pls_status resume_frames(pls_recorder *recorder, pls_recorder_output *output, const char *run)
 {
-    uint64_t count;
+    uint64_t count = 0;
     PLS_TRY(find_entry(&run, "frames", output->def->name, &count));
     PLS_TRY(pls_reserve(&output->times, &output->frame_capacity, count, sizeof *output->times, "the times of frames"));
     for (output->frames = 0; output->frames < count; ++output->frames)
@@ -325,7 +325,7 @@ pls_status pls_recorder_resume(pls_recorder *recorder, const char *run)
         if (pls_recorder_has_series(output))
         {
             const char *line = run;
-            uint64_t size;
+            uint64_t size = 0;
             PLS_TRY(find_entry(&line, "series", output->def->name, &size));
             PLS_TRY(open_series(recorder, output, size));
         }

@@ -7,8 +7,6 @@
 
 #include "base/atomic_file.h"
 
-#include <stdio.h>
-
 static pls_status load_scene(const char *directory, pls_scene **scene)
 {
     char path[PLS_PATH_SIZE];
@@ -38,7 +36,7 @@ static pls_status restore(pls_run *run, const pls_checkpoint *checkpoint)
     PLS_TRY(pls_checkpoint_restore(checkpoint, run->world));
     PLS_TRY(pls_run_watch(run));
     PLS_TRY(pls_recorder_resume(&run->recorder, checkpoint->run));
-    pls_run_recall_checkpoints(run, checkpoint);
+    pls_run_recall_checkpoints(run, checkpoint, false);
     return PLS_OK;
 }
 
@@ -48,9 +46,13 @@ static pls_status try_checkpoint(pls_run *run, uint64_t step, bool *finished)
     pls_checkpoint checkpoint = {0};
     PLS_TRY(pls_checkpoint_path(path, run->directory.path, step));
     PLS_TRY(pls_checkpoint_open(&checkpoint, path));
-    pls_run_recall_end(run, &checkpoint);
+    run->end = isnan(run->def->until) ? pls_run_end_of(&checkpoint, run->scene) : run->def->until;
     *finished = is_finished(run, &checkpoint);
-    pls_status status = *finished ? PLS_OK : restore(run, &checkpoint);
+    pls_status status = PLS_OK;
+    if (*finished)
+        pls_run_recall_checkpoints(run, &checkpoint, true);
+    else
+        status = restore(run, &checkpoint);
     pls_checkpoint_close(&checkpoint);
     return status;
 }
@@ -79,13 +81,10 @@ static pls_status go_on(pls_run *run, const pls_checkpoint_list *list)
     {
         pls_run_event(run, "the run in \"%s\" has finished at t = %.6g s; ask for a later end (--until) to go on", run->directory.path,
                       run->end);
-        return PLS_OK;
+        return pls_run_keep_scheduled(run); // in case it was killed just before that
     }
     pls_run_event(run, "going on from the checkpoint at t = %.6g s (step %llu)", pls_world_time(run->world),
                   (unsigned long long)pls_world_step_number(run->world));
-    char path[PLS_PATH_SIZE];
-    PLS_TRY(pls_run_path(path, run->directory.path, "summary.json")); // it is that of an earlier end
-    PLS_TRY(pls_run_remove(path));
     return pls_run_carry_out(run, false);
 }
 

@@ -134,9 +134,13 @@ static pls_status stop_interrupted(pls_run *run)
                     pls_world_time(run->world), run->def->directory);
 }
 
+static bool is_at_end(const pls_run *run) { return pls_run_reached(pls_world_time(run->world), pls_world_dt(run->world), run->end); }
+
+/// The last checkpoint is written by finish().
 static pls_status save_if_due(pls_run *run)
 {
     pls_world *world = run->world;
+    if (is_at_end(run)) return PLS_OK;
     if (pls_run_checkpoint_due(run, pls_world_step_number(world), pls_world_time(world), pls_world_dt(world)))
         return pls_run_save(run, true);
     bool wait_is_over = pls_clock() - run->wall_saved > save_interval;
@@ -152,16 +156,22 @@ static pls_status begin(pls_run *run)
 
 static pls_status step_to_end(pls_run *run)
 {
-    pls_world *world = run->world;
-    while (!pls_run_reached(pls_world_time(world), pls_world_dt(world), run->end))
+    while (!is_at_end(run))
     {
         if (is_interrupted(run)) return stop_interrupted(run);
-        PLS_TRY(pls_step(world));
-        PLS_TRY(pls_recorder_look(&run->recorder, world));
+        PLS_TRY(pls_step(run->world));
+        PLS_TRY(pls_recorder_look(&run->recorder, run->world));
         PLS_TRY(save_if_due(run));
         if (pls_clock() - run->wall_report > report_interval) tell(run, NULL);
     }
-    if (run->saved_step != pls_world_step_number(world) || run->scheduled[0] != run->saved_step) PLS_TRY(pls_run_save(run, true));
+    return PLS_OK;
+}
+
+/// The summary comes before the checkpoint: a run whose last checkpoint is there is complete, and one that was killed before it steps to the end again.
+static pls_status finish(pls_run *run)
+{
+    PLS_TRY(pls_run_write_summary(run, PLS_OK));
+    PLS_TRY(pls_run_save(run, true));
     return pls_run_keep_scheduled(run);
 }
 
@@ -172,11 +182,14 @@ pls_status pls_run_carry_out(pls_run *run, bool from_start)
     tell(run, NULL);
     pls_status outcome = from_start ? begin(run) : PLS_OK;
     if (outcome == PLS_OK) outcome = step_to_end(run);
-    char reason[2048];
-    snprintf(reason, sizeof reason, "%s", pls_last_message());
-    pls_status summary = pls_run_write_summary(run, outcome);
-    if (outcome != PLS_OK) return pls_fail(outcome, "%s", reason); // the first failure is the one to tell
-    PLS_TRY(summary);
+    if (outcome == PLS_OK) outcome = finish(run);
+    if (outcome != PLS_OK)
+    {
+        char reason[2048];
+        snprintf(reason, sizeof reason, "%s", pls_last_message());
+        pls_run_write_summary(run, outcome); // should that fail too, the first failure is the one to tell
+        return pls_fail(outcome, "%s", reason);
+    }
     tell(run, NULL);
     return PLS_OK;
 }

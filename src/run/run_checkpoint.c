@@ -38,8 +38,16 @@ static pls_status describe(pls_run *run, pls_text *text)
 {
     char number[32];
     PLS_TRY(pls_text_print(text, "end %s\n", pls_format_double(number, run->end)));
-    if (run->scheduled[0] != PLS_NO_STEP) PLS_TRY(pls_text_print(text, "scheduled_before %" PRIu64 "\n", run->scheduled[0]));
+    uint64_t before = run->scheduled[run->scheduled[0] == pls_world_step_number(run->world)];
+    if (before != PLS_NO_STEP) PLS_TRY(pls_text_print(text, "scheduled_before %" PRIu64 "\n", before));
     return pls_recorder_describe(&run->recorder, text);
+}
+
+static void note_scheduled(pls_run *run, uint64_t step)
+{
+    if (run->scheduled[0] == step) return;
+    run->scheduled[1] = run->scheduled[0];
+    run->scheduled[0] = step;
 }
 
 pls_status pls_run_save(pls_run *run, bool scheduled)
@@ -54,11 +62,7 @@ pls_status pls_run_save(pls_run *run, bool scheduled)
     if (status == PLS_OK) status = pls_checkpoint_write(path, run->world, pls_scene_hash(run->scene), text.data);
     pls_text_free(&text);
     PLS_TRY(status);
-    if (scheduled)
-    {
-        run->scheduled[1] = run->scheduled[0];
-        run->scheduled[0] = step;
-    }
+    if (scheduled) note_scheduled(run, step);
     run->saved_step = step;
     run->wall_saved = pls_clock();
     PLS_TRY(pls_checkpoint_prune(run->directory.path, 2, run->scheduled));
@@ -68,28 +72,23 @@ pls_status pls_run_save(pls_run *run, bool scheduled)
 
 pls_status pls_run_keep_scheduled(pls_run *run) { return pls_checkpoint_prune(run->directory.path, 0, run->scheduled); }
 
-void pls_run_recall_end(pls_run *run, const pls_checkpoint *checkpoint)
+double pls_run_end_of(const pls_checkpoint *checkpoint, const pls_scene *scene)
 {
     const char *line = checkpoint->run;
     const char *entry = pls_run_text_find(&line, "end");
     char number[32] = "";
     if (entry) snprintf(number, sizeof number, "%.*s", (int)strcspn(entry, "\n"), entry);
     double end;
-    run->end = pls_parse_double(number, &end) ? end : pls_scene_end_time(run->scene);
-    if (!isnan(run->def->until)) run->end = run->def->until;
+    return pls_parse_double(number, &end) ? end : pls_scene_end_time(scene);
 }
 
-void pls_run_recall_checkpoints(pls_run *run, const pls_checkpoint *checkpoint)
+void pls_run_recall_checkpoints(pls_run *run, const pls_checkpoint *checkpoint, bool last)
 {
     const pls_persist_header *header = &checkpoint->header;
     const char *line = checkpoint->run;
     const char *entry = pls_run_text_find(&line, "scheduled_before");
     run->scheduled[0] = entry ? strtoull(entry, NULL, 10) : PLS_NO_STEP;
     run->scheduled[1] = PLS_NO_STEP;
-    if (pls_run_checkpoint_due(run, header->step, header->time, header->dt))
-    {
-        run->scheduled[1] = run->scheduled[0];
-        run->scheduled[0] = header->step;
-    }
+    if (last || pls_run_checkpoint_due(run, header->step, header->time, header->dt)) note_scheduled(run, header->step);
     run->saved_step = header->step;
 }

@@ -48,10 +48,10 @@ bool pls_run_checkpoint_due(const pls_run *run, uint64_t step, double time, doub
 bool pls_run_has_checkpoint_schedule(const pls_run *run);
 /// Keep only the last two scheduled checkpoints.
 pls_status pls_run_keep_scheduled(pls_run *run);
-/// Take over the end that the checkpoint's run was to go to, unless the caller asks for another one.
-void pls_run_recall_end(pls_run *run, const pls_checkpoint *checkpoint);
-/// Take over which checkpoints were written; needs the recorder.
-void pls_run_recall_checkpoints(pls_run *run, const pls_checkpoint *checkpoint);
+/// The time [s] that the checkpoint's run was to go to.
+double pls_run_end_of(const pls_checkpoint *checkpoint, const pls_scene *scene);
+/// Take over which checkpoints were written; `last`: this is that of the end, else the recorder must be there.
+void pls_run_recall_checkpoints(pls_run *run, const pls_checkpoint *checkpoint, bool last);
 
 /// Write summary.json. `outcome` is how stepping ended.
 pls_status pls_run_write_summary(pls_run *run, pls_status outcome);

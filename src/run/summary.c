@@ -77,10 +77,20 @@ static pls_status add_counts(pls_text *json, pls_run *run)
     return add_named_number(json, "particle_steps_per_s", bodies * steps / wall, ",\n");
 }
 
-static pls_status add_figures(pls_text *json, pls_run *run)
+/// After a failed run, or before the first step since a checkpoint, some values may not be to be had; else that is a failure.
+static pls_status is_known(const pls_run *run, pls_status outcome, pls_status status, bool *known)
+{
+    *known = status == PLS_OK;
+    bool stepped = pls_world_step_number(run->world) > run->first_step || run->first_step == 0;
+    return outcome == PLS_OK && stepped ? status : PLS_OK;
+}
+
+static pls_status add_figures(pls_text *json, pls_run *run, pls_status outcome)
 {
     pls_world_figures f = {0};
-    if (pls_world_get_figures(run->world, &f) != PLS_OK)
+    bool known;
+    PLS_TRY(is_known(run, outcome, pls_world_get_figures(run->world, &f), &known));
+    if (!known)
     {
         return pls_text_print(json, "  \"energies\": null,\n  \"momentum\": null,\n  \"angular_momentum\": null,\n");
     }
@@ -97,10 +107,11 @@ static pls_status add_figures(pls_text *json, pls_run *run)
 }
 
 /// Values of the observer at the last state, whether or not a look was due there.
-static pls_status add_series(pls_text *json, pls_recorder_output *output, pls_world *world)
+static pls_status add_series(pls_text *json, const pls_run *run, pls_recorder_output *output, pls_status outcome)
 {
     const pls_series *series = &output->series;
-    bool known = series->values(series->context, world, output->values) == PLS_OK;
+    bool known;
+    PLS_TRY(is_known(run, outcome, series->values(series->context, run->world, output->values), &known));
     PLS_TRY(pls_text_print(json, "{"));
     for (size_t c = 0; c < series->column_count; ++c)
     {
@@ -109,7 +120,7 @@ static pls_status add_series(pls_text *json, pls_recorder_output *output, pls_wo
     return pls_text_print(json, "}");
 }
 
-static pls_status add_observers(pls_text *json, pls_run *run)
+static pls_status add_observers(pls_text *json, pls_run *run, pls_status outcome)
 {
     PLS_TRY(pls_text_print(json, "  \"observers\": {"));
     const char *separator = "";
@@ -122,7 +133,7 @@ static pls_status add_observers(pls_text *json, pls_run *run)
         PLS_TRY(add_string(json, output->def->name));
         PLS_TRY(pls_text_print(json, ": "));
         if (series)
-            PLS_TRY(add_series(json, output, run->world));
+            PLS_TRY(add_series(json, run, output, outcome));
         else
             PLS_TRY(pls_text_print(json, "{\"frames\": %zu}", output->frames));
         separator = ",";
@@ -130,10 +141,12 @@ static pls_status add_observers(pls_text *json, pls_run *run)
     return pls_text_print(json, "%s},\n", *separator ? "\n  " : "");
 }
 
-static pls_status add_hash(pls_text *json, pls_run *run)
+static pls_status add_hash(pls_text *json, pls_run *run, pls_status outcome)
 {
     uint64_t hash;
-    if (pls_world_state_hash(run->world, &hash) != PLS_OK) return pls_text_print(json, "  \"state_hash\": null\n}\n");
+    bool known;
+    PLS_TRY(is_known(run, outcome, pls_world_state_hash(run->world, &hash), &known));
+    if (!known) return pls_text_print(json, "  \"state_hash\": null\n}\n");
     return pls_text_print(json, "  \"state_hash\": \"%016" PRIx64 "\"\n}\n", hash);
 }
 
@@ -143,9 +156,9 @@ pls_status pls_run_write_summary(pls_run *run, pls_status outcome)
     pls_text json = {0};
     pls_status status = add_head(&json, run, outcome); // first of all: it quotes the last message
     if (status == PLS_OK) status = add_counts(&json, run);
-    if (status == PLS_OK) status = add_figures(&json, run);
-    if (status == PLS_OK) status = add_observers(&json, run);
-    if (status == PLS_OK) status = add_hash(&json, run);
+    if (status == PLS_OK) status = add_figures(&json, run, outcome);
+    if (status == PLS_OK) status = add_observers(&json, run, outcome);
+    if (status == PLS_OK) status = add_hash(&json, run, outcome);
     if (status == PLS_OK) status = pls_run_path(path, run->directory.path, "summary.json");
     if (status == PLS_OK) status = pls_write_file(path, json.data, json.size);
     pls_text_free(&json);

@@ -1,7 +1,7 @@
 // build.c -- the order in which a world is built.
 //
-// Places of bodies come first: they tell how many states there are and with what they begin. With those the values of materials and laws at t = 0 are
-// known; then bodies, forces and states. What depends on time is bound last.
+// Places of bodies come first: they tell how many states there are and with what they begin. With those the values of materials and laws at
+// t = 0 are known; then bodies, forces and states. What depends on time is bound last.
 
 #include "scene/build.h"
 
@@ -105,8 +105,7 @@ static pls_status set_law(pls_builder *b, const pls_scene_contact *contact, size
         place += row->components == 3 ? 3 : 1;
     }
     pls_status status = pls_world_set_law(b->world, b->materials[i], b->materials[j], contact->ops, values);
-    return pls_node_context(status, contact->node, "contact between '%s' and '%s'", b->scene->materials[i].name,
-                            b->scene->materials[j].name);
+    return pls_node_context(status, contact->node, "contact");
 }
 
 static pls_status bind_law(pls_builder *b, const pls_scene_contact *contact, size_t i, size_t j)

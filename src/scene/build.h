@@ -40,7 +40,8 @@ pls_status pls_build_motion_context(const pls_builder *b, const pls_node *motion
 pls_status pls_build_forces(const pls_builder *b);
 pls_status pls_build_states(const pls_builder *b);
 
-/// The text of the k-th component of a vector (or of a scalar, k = 0) for a formula: numbers are written into `number`, words and missing ones give null.
+/// The text of the k-th component of a vector (or of a scalar, k = 0) for a formula: numbers are written into `number`, words and missing
+/// ones give null.
 const char *pls_build_component(const pls_node *vector, size_t k, char number[32]);
 
 #endif

@@ -113,7 +113,8 @@ static pls_status plan_motion(const pls_builder *b, entry_plan *plan)
     motion->centre = pls_scene_vector(plan->driven, "about");
     bool varies = pls_scene_varies(pls_node_get(plan->driven, "velocity")) ||
                   pls_scene_varies(pls_node_get(plan->driven, "angular_velocity")) || pls_node_get(plan->driven, "displacement");
-    return varies ? pls_build_motion_formula(b, plan->driven, &plan->motion) : PLS_OK;
+    if (!varies || motion->axes == 0) return PLS_OK; // with every axis free there is nothing to ask
+    return pls_build_motion_formula(b, plan->driven, &plan->motion);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------------------
@@ -218,9 +219,13 @@ pls_status pls_build_bodies(pls_builder *b)
 pls_status pls_build_state_body(const pls_builder *b, const pls_scene_state *state, size_t copy, size_t *index)
 {
     size_t count = b->points[state->body].count;
-    *index = state->each ? copy : state->index < 0 ? count / 2 : (size_t)state->index;
+    const pls_node *of = pls_node_get(state->node, "of");
+    const char *name = b->scene->bodies[state->body].name;
+    if (!state->each && state->index == PLS_ONLY_BODY && count > 1)
+        return pls_node_fail(of, "say which:  index: 0,  index: middle  or  each: true", "'%s' holds %zu bodies", name, count);
+    *index = state->each ? copy : state->index == PLS_ONLY_BODY ? 0 : state->index == PLS_MIDDLE_BODY ? count / 2 : (size_t)state->index;
     if (*index < count) return PLS_OK;
-    const pls_node *at = pls_node_get(state->node, "index") ? pls_node_get(state->node, "index") : pls_node_get(state->node, "of");
-    return pls_node_fail(at, "bodies are numbered from 0", "'%s' holds %zu bodies; there is no body %zu",
-                         b->scene->bodies[state->body].name, count, *index);
+    const pls_node *at = pls_node_get(state->node, "index") ? pls_node_get(state->node, "index") : of;
+    return pls_node_fail(at, "bodies are numbered from 0", "'%s' holds %zu bod%s; there is no body %zu", name, count,
+                         count == 1 ? "y" : "ies", *index);
 }

@@ -1,7 +1,7 @@
 // build_formulas.c -- functions that the world calls during a run, made of the scene's expressions, and their contexts.
 //
-// Each context holds a reference to a formula (a pool of compiled copies, formula.c), so the world may call from any thread. The order of the variables
-// is that of pls_scene_symbols. A context is freed by the world through its `destroy`.
+// Each context holds a reference to a formula (a pool of compiled copies, formula.c), so the world may call from any thread. The order of
+// the variables is that of pls_scene_symbols. A context is freed by the world through its `destroy`.
 
 #include "scene/build.h"
 
@@ -39,6 +39,7 @@ typedef struct timely
     char name[PLS_NAME_SIZE];
     double minimum, maximum;
     bool open;
+    char range[128]; ///< in words
 } timely;
 
 static pls_status timely_value(void *context, double time, const double *states, double *value)
@@ -48,7 +49,7 @@ static pls_status timely_value(void *context, double time, const double *states,
     for (size_t k = 0; k < f->state_count; ++k) variables[1 + k] = states[f->place[k]];
     PLS_TRY(pls_formula_once(f->formula, variables, value));
     if ((f->open ? *value > f->minimum : *value >= f->minimum) && *value <= f->maximum) return PLS_OK;
-    return pls_fail(PLS_EXPRESSION, "'%s' is %g at t = %g s, outside its range", f->name, *value, time);
+    return pls_fail(PLS_EXPRESSION, "'%s' is %g at t = %g s, but must be %s", f->name, *value, time, f->range);
 }
 
 static void timely_destroy(void *context)
@@ -70,6 +71,7 @@ static pls_status make_timely(const pls_builder *b, const pls_key *key, const pl
     f->maximum = key->maximum;
     f->open = key->flags & PLS_KEY_OPEN_MINIMUM;
     snprintf(f->name, sizeof f->name, "%s", key->name);
+    pls_schema_range(key, f->range);
     pls_status status = pls_formula_make(&node->text, 1, &symbols, &f->formula);
     if (status == PLS_OK) return PLS_OK;
     timely_destroy(f);
@@ -85,7 +87,7 @@ pls_status pls_build_initial_value(const pls_builder *b, const pls_key *key, con
     PLS_TRY(make_timely(b, key, node, &f));
     pls_status status = timely_value(f, 0.0, b->initial_states, value);
     timely_destroy(f);
-    return pls_node_context(status, node, "'%s'", key->name);
+    return pls_node_context(status, node, "the expression");
 }
 
 pls_status pls_build_bind_material(const pls_builder *b, pls_material_id material, const pls_key *key, const pls_node *node)
@@ -115,7 +117,8 @@ typedef struct driven
     double end;             ///< of the run [s]
 } driven;
 
-/// Velocity from a path: the central difference over one step. Positions follow by the midpoint rule, so with it the body lies on the path after every step.
+/// Velocity from a path: the central difference over one step. Positions follow by the midpoint rule, so with it the body lies on the path
+/// after every step.
 static pls_status path_velocity(const driven *d, double time, double *v)
 {
     double dt = pls_world_dt(d->world), before[6], after[6];

@@ -1,12 +1,13 @@
 // expression.c -- the expression language on top of muparser.
 //
-// A scan of our own comes first. It finds the names (so that messages can say what is unknown and suggest what was meant), tells which variables are
-// used, and refuses what muparser would take but a scene must not: assignment, strings, several results. muparser then only judges grammar; its error
-// code and position are asked for, not its texts, which live in a static buffer.
+// A scan of our own comes first. It finds the names (so that messages can say what is unknown and suggest what was meant), tells which
+// variables are used, and refuses what muparser would take but a scene must not: assignment, strings, several results. muparser then only
+// judges grammar; its error code and position are asked for, not its texts, which live in a static buffer.
 
 #include "scene/expression.h"
 
 #include "base/registry.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <muParserDLL.h>
@@ -32,7 +33,8 @@ enum { FUNCTION_COUNT = sizeof functions / sizeof *functions };
 static const char *const reserved[] = {"pi", "e", "t", "x", "y", "z", "vx", "vy", "vz", "r", "m", "s", "free", "auto", "all", "world"};
 static const double PI = 3.14159265358979323846, EULER = 2.71828182845904523536;
 
-/// muparser makes its tables of operators and messages on first use; compiling is rare, so one lock spares us the question whether that is safe.
+/// muparser makes its tables of operators and messages on first use; compiling is rare, so one lock spares us the question whether that is
+/// safe.
 static pthread_mutex_t compile_lock = PTHREAD_MUTEX_INITIALIZER;
 
 const char *const *pls_expression_functions(size_t *count)
@@ -185,6 +187,10 @@ static pls_status scan_number(scan *s, const char **at)
             while (is_digit(*c)) ++c;
         }
     }
+    char number[512];
+    double value;
+    snprintf(number, sizeof number, "%.*s", (int)(c - *at), *at);
+    if (!pls_parse_double(number, &value)) return refuse(s, *at, "", "a number that is misspelt or too large");
     if (is_letter(*c)) return refuse(s, c, "write the operator, as in 2*x", "a name directly behind a number");
     *at = c;
     return PLS_OK;

@@ -1,7 +1,7 @@
 // expression.h -- arithmetic in texts ("kn/2", "v*sin(2*pi*t)"), compiled once and evaluated many times.
 //
-// Numbers only: + - * / ^, comparisons, && ||, condition ? a : b, the functions of pls_expression_functions(), the constants pi and e. There is no
-// assignment. Built on muparser's C interface; what that keeps in static buffers (messages, names) is never asked for.
+// Numbers only: + - * / ^, comparisons, && ||, condition ? a : b, the functions of pls_expression_functions(), the constants pi and e.
+// There is no assignment. Built on muparser's C interface; what that keeps in static buffers (messages, names) is never asked for.
 #ifndef PLS_SCENE_EXPRESSION_H
 #define PLS_SCENE_EXPRESSION_H
 
@@ -46,7 +46,8 @@ bool pls_expression_uses(const pls_expression *expression, size_t k);
 /// Value with `values` for the variables. NOT_A_NUMBER unless the result is finite. One thread at a time per expression.
 pls_status pls_expression_evaluate(pls_expression *expression, const double *values, double *result);
 
-/// Whether `name` is taken by a function, constant or variable of the language (x, t, pi, ...): such a name cannot be a variable of the user.
+/// Whether `name` is taken by a function, constant or variable of the language (x, t, pi, ...): such a name cannot be a variable of the
+/// user.
 bool pls_expression_reserved(const char *name);
 /// Letters, digits and underscores, not beginning with a digit.
 bool pls_expression_is_name(const char *name);

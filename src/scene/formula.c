@@ -1,14 +1,13 @@
 // formula.c -- vectors of expressions for many threads.
 //
-// muparser reads variables from fixed addresses, so one compiled expression serves one thread. A formula keeps a pool of compiled copies: a thread
-// takes one, evaluates a batch, gives it back. The lock is held for a few instructions per batch.
+// muparser reads variables from fixed addresses, so one compiled expression serves one thread. A formula keeps a pool of compiled copies: a
+// thread takes one, evaluates a batch, gives it back. The lock is held for a few instructions per batch.
 
 #include "scene/expression.h"
 
 #include "base/text.h"
 
 #include <pthread.h>
-#include <stdint.h>
 #include <string.h>
 
 struct pls_formula_copy
@@ -26,7 +25,10 @@ struct pls_formula
     char **text;
     double *number; ///< value of texts that are plain numbers
     bool *is_number;
-    pls_symbols symbols; ///< own copies of all names
+    char **names;          ///< own copies of all names: of the variables
+    char **constant_names; ///< and of the constants
+    pls_constant *constants;
+    pls_symbols symbols; ///< made of these
 };
 
 static void free_copy(pls_formula_copy *copy, size_t count)
@@ -46,12 +48,11 @@ static void free_formula(pls_formula *formula)
         free_copy(copy, formula->count);
     }
     for (size_t k = 0; k < formula->count && formula->text; ++k) pls_release(&formula->text[k]);
-    char **variables = (char **)(uintptr_t)formula->symbols.variables;
-    for (size_t k = 0; k < formula->symbols.variable_count && variables; ++k) pls_release(&variables[k]);
-    pls_release(&variables);
-    pls_constant *constants = (pls_constant *)(uintptr_t)formula->symbols.constants;
-    for (size_t k = 0; k < formula->symbols.constant_count && constants; ++k) pls_release(&constants[k].name);
-    pls_release(&constants);
+    for (size_t k = 0; k < formula->symbols.variable_count; ++k) pls_release(&formula->names[k]);
+    for (size_t k = 0; k < formula->symbols.constant_count; ++k) pls_release(&formula->constant_names[k]);
+    pls_release(&formula->names);
+    pls_release(&formula->constant_names);
+    pls_release(&formula->constants);
     pls_release(&formula->text);
     pls_release(&formula->number);
     pls_release(&formula->is_number);
@@ -59,22 +60,21 @@ static void free_formula(pls_formula *formula)
     pls_release(&formula);
 }
 
-static pls_status copy_symbols(const pls_symbols *from, pls_symbols *to)
+static pls_status copy_symbols(pls_formula *formula, const pls_symbols *from)
 {
-    char **names;
-    PLS_TRY(pls_allocate(&names, from->variable_count, sizeof *names, "expression names"));
-    to->variables = (const char *const *)names;
+    pls_symbols *to = &formula->symbols;
+    PLS_TRY(pls_allocate(&formula->names, from->variable_count, sizeof(char *), "expression names"));
+    to->variables = (const char *const *)formula->names;
     to->variable_count = from->variable_count;
-    for (size_t k = 0; k < from->variable_count; ++k) PLS_TRY(pls_copy_text(&names[k], from->variables[k], "an expression name"));
-    pls_constant *constants;
-    PLS_TRY(pls_allocate(&constants, from->constant_count, sizeof *constants, "expression constants"));
-    to->constants = constants;
+    for (size_t k = 0; k < from->variable_count; ++k) PLS_TRY(pls_copy_text(&formula->names[k], from->variables[k], "an expression name"));
+    PLS_TRY(pls_allocate(&formula->constants, from->constant_count, sizeof *formula->constants, "expression constants"));
+    PLS_TRY(pls_allocate(&formula->constant_names, from->constant_count, sizeof(char *), "expression constants"));
+    to->constants = formula->constants;
     to->constant_count = from->constant_count;
     for (size_t k = 0; k < from->constant_count; ++k)
     {
-        char *name;
-        PLS_TRY(pls_copy_text(&name, from->constants[k].name, "an expression name"));
-        constants[k] = (pls_constant){name, from->constants[k].value};
+        PLS_TRY(pls_copy_text(&formula->constant_names[k], from->constants[k].name, "an expression name"));
+        formula->constants[k] = (pls_constant){formula->constant_names[k], from->constants[k].value};
     }
     return PLS_OK;
 }
@@ -106,7 +106,7 @@ pls_status pls_formula_make(const char *const *texts, size_t count, const pls_sy
     }
     made->references = 1;
     pls_status status = copy_texts(made, texts, count);
-    if (status == PLS_OK) status = copy_symbols(symbols, &made->symbols);
+    if (status == PLS_OK) status = copy_symbols(made, symbols);
     pls_formula_copy *copy = NULL;
     if (status == PLS_OK) status = pls_formula_begin(made, &copy); // wrong texts fail here, not in the run
     if (status == PLS_OK) pls_formula_end(made, copy);

@@ -19,8 +19,8 @@ typedef struct pls_points
 pls_status pls_points_make(const pls_scene *scene, const pls_scene_body *body, pls_points *points);
 void pls_points_free(pls_points *points);
 
-/// random_pack.c: `random` is the resolved section, `radius` the bounding radius of the shape at scale 1.
-pls_status pls_points_random(const pls_scene *scene, const pls_node *random, double radius, double scale, pls_points *points);
+/// random_pack.c: `section` is the resolved `random`, `radius` the bounding radius of the shape at scale 1.
+pls_status pls_points_random(const pls_scene *scene, const pls_node *section, double radius, double scale, pls_points *points);
 /// csv_points.c
 pls_status pls_points_csv(const pls_scene *scene, const pls_node *csv, double radius, double scale, pls_points *points);
 

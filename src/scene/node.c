@@ -124,7 +124,7 @@ static void format_excerpt(const pls_source *source, int line, int column, char 
         at += starts_character(text[k]);
         if (at < first) continue;
         if (at >= first + EXCERPT_WIDTH) break;
-        out[used++] = text[k] == '\t' ? ' ' : text[k];
+        out[used++] = (char)(text[k] == '\t' ? ' ' : text[k]);
     }
     out[used] = '\0';
     int indent = column - first + (first > 1 ? 3 : 0);

@@ -1,7 +1,7 @@
 // node.h -- the scene file as a tree of nodes, each knowing its place in the text, and the error messages that show the place.
 //
-// The reader (yaml.c) makes the tree, overrides change it, resolve.c checks it against the schema and puts every value in force into it. What
-// then uses the scene (parse_*.c, used.c) reads a tree in which each node has the type the schema promises.
+// The reader (yaml.c) makes the tree, overrides change it, resolve.c checks it against the schema and puts every value in force into it.
+// What then uses the scene (parse_*.c, used.c) reads a tree in which each node has the type the schema promises.
 #ifndef PLS_SCENE_NODE_H
 #define PLS_SCENE_NODE_H
 

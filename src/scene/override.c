@@ -1,8 +1,8 @@
 // override.c -- `--set path=value`: change one value of the tree before it is resolved.
 //
-// Path: keys joined by points, [k] for an entry of a list, by number or by its name ("bodies[top].motion.velocity"). The value is YAML. A key that the
-// file does not hold is added, and resolving refuses it if the schema does not know it; under vars, materials and shapes, whose keys are the user's own
-// names, it must be there already.
+// Path: keys joined by points, [k] for an entry of a list, by number or by its name ("bodies[top].motion.velocity"). The value is YAML. A
+// key that the file does not hold is added, and resolving refuses it if the schema does not know it; under vars, materials and shapes,
+// whose keys are the user's own names, it must be there already.
 
 #include "scene/scene_data.h"
 
@@ -39,7 +39,7 @@ static pls_status enter_list(override *o, pls_node *list, pls_node ***slot)
     PLS_TRY(pls_arena_print(&o->scene->arena, &name, "%.*s", (int)(close - o->at - 1), o->at + 1));
     o->at = close + 1;
     if (list->kind != PLS_NODE_LIST) return fail_path(o, "[%s] does not fit: this is not a list", name, NULL);
-    size_t size = strlen(name), index = list->count;
+    size_t size = strlen(name), index;
     if (size > 0 && size < 10 && strspn(name, "0123456789") == size)
         index = (size_t)strtoul(name, NULL, 10);
     else
@@ -112,7 +112,7 @@ pls_status pls_scene_override(pls_scene *scene, const char *text)
     source->size = strlen(source->text);
 
     override o = {.scene = scene, .source = source, .at = text, .end = equals};
-    pls_node **slot = NULL, *value;
+    pls_node **slot = &scene->root, *value;
     PLS_TRY(pls_yaml_read(&scene->arena, source, &value));
     PLS_TRY(walk_path(&o, &slot));
     *slot = value;

@@ -108,6 +108,20 @@ static pls_status check_mass(const pls_scene *scene, const pls_scene_body *body,
                          body->name);
 }
 
+/// A half-space that would end where the periodic box repeats.
+static pls_status check_periodic(const pls_scene *scene, const pls_scene_body *body)
+{
+    const pls_node *periodic = pls_node_get(pls_node_get(scene->root, "domain"), "periodic"), *normal = pls_node_get(body->node, "normal");
+    if (!periodic || !normal || !scene->shapes[body->shape].ops->unbounded) return PLS_OK;
+    for (size_t k = 0; k < periodic->count; ++k)
+    {
+        if (strcmp(periodic->child[k]->text, "true") == 0 && normal->child[k]->number != 0.0)
+            return pls_node_fail(normal->child[k], "walls of a periodic box stand along its periodic axes",
+                                 "the normal of '%s' has a component along the periodic axis %c", body->name, "xyz"[k]);
+    }
+    return PLS_OK;
+}
+
 static pls_status parse_body(pls_scene *scene, const pls_node *node, size_t k)
 {
     pls_scene_body *body = &scene->bodies[k];
@@ -131,6 +145,7 @@ static pls_status parse_body(pls_scene *scene, const pls_node *node, size_t k)
     PLS_TRY(check_place(body, shape));
     PLS_TRY(check_motion(body, unbounded));
     PLS_TRY(check_direction(node, "normal", NULL));
+    PLS_TRY(check_periodic(scene, body));
     PLS_TRY(check_direction(node, "orientation", NULL));
     PLS_TRY(check_direction(node, "orientation", "axis"));
     const pls_node *turn = pls_node_get(node, "orientation");

@@ -14,13 +14,13 @@ static pls_status parse_owner(pls_scene *scene, const pls_node *node, pls_scene_
 {
     const pls_node *of = pls_node_get(node, "of"), *index = pls_node_get(node, "index");
     state->body = PLS_OF_WORLD;
-    state->index = 0;
+    state->index = PLS_ONLY_BODY;
     if (strcmp(of->text, "world") == 0) return PLS_OK;
     pls_node name = *of;
     size_t size = strcspn(of->text, "[");
     PLS_TRY(pls_arena_print(&scene->arena, &name.text, "%.*s", (int)size, of->text));
     PLS_TRY(pls_scene_need_body(scene, &name, &state->body));
-    if (index) state->index = index->numeric ? (long)index->number : -1;
+    if (index) state->index = index->numeric ? (long)index->number : PLS_MIDDLE_BODY;
     if (of->text[size] == '\0') return PLS_OK;
     const char *digits = of->text + size + 1;
     size_t count = strspn(digits, "0123456789");
@@ -31,37 +31,50 @@ static pls_status parse_owner(pls_scene *scene, const pls_node *node, pls_scene_
     return PLS_OK;
 }
 
+/// What `radius`, `rate` and `target` say: where the rate stands and what follows the state.
+static pls_status parse_target(const pls_scene *scene, pls_scene_state *state)
+{
+    const pls_node *node = state->node, *radius = pls_node_get(node, "radius"), *rate = pls_node_get(node, "rate"),
+                   *target = pls_node_get(node, "target");
+    if (radius && rate) return pls_node_fail(rate, "the rate stands within `radius`", "'radius' and 'rate' exclude each other");
+    if (radius && strcmp(target->text, "none") != 0) return pls_node_fail(target, NULL, "'radius' and 'target' exclude each other");
+    state->rate = radius ? pls_node_get(radius, "rate") : rate;
+    state->initial = pls_node_get(radius ? radius : node, "initial");
+    state->target = PLS_STATE_FREE;
+    if (radius || strcmp(target->text, "radius") == 0)
+        state->target = PLS_STATE_RADIUS;
+    else if (strcmp(target->text, "scale") == 0)
+        state->target = PLS_STATE_SCALE;
+    if (state->target == PLS_STATE_FREE) return PLS_OK;
+
+    const pls_node *at = radius ? radius : target;
+    if (state->body == PLS_OF_WORLD)
+        return pls_node_fail(at, "give `of: NAME`", "a state of the world has no body whose size could follow it");
+    if (scene->shapes[scene->bodies[state->body].shape].ops->unbounded)
+        return pls_node_fail(at, NULL, "the unbounded shape of '%s' has no size that could follow a state",
+                             scene->bodies[state->body].name);
+    if (state->initial && !(state->initial->number > 0.0))
+        return pls_node_fail(state->initial, NULL, "the initial %s must be greater than 0",
+                             state->target == PLS_STATE_RADIUS ? "radius" : "scale");
+    return PLS_OK;
+}
+
 static pls_status parse_state(pls_scene *scene, const pls_node *node, size_t k)
 {
     pls_scene_state *state = &scene->states[k];
     *state = (pls_scene_state){.node = node, .each = pls_scene_boolean(node, "each", false)};
     PLS_TRY(parse_owner(scene, node, state));
-    const pls_node *radius = pls_node_get(node, "radius"), *rate = pls_node_get(node, "rate"), *target = pls_node_get(node, "target");
-    if (radius && rate) return pls_node_fail(rate, "the rate stands within `radius`", "'radius' and 'rate' exclude each other");
-    if (!radius && !rate) return pls_node_fail(node, "rate: ds/dt, a number or an expression", "missing key 'rate' in states[%zu]", k);
-    if (radius && strcmp(target->text, "none") != 0) return pls_node_fail(target, NULL, "'radius' and 'target' exclude each other");
-    state->rate = radius ? pls_node_get(radius, "rate") : rate;
-    state->initial = pls_node_get(radius ? radius : node, "initial");
-    state->target = radius || strcmp(target->text, "radius") == 0 ? PLS_STATE_RADIUS
-                    : strcmp(target->text, "scale") == 0          ? PLS_STATE_SCALE
-                                                                  : PLS_STATE_FREE;
+    PLS_TRY(parse_target(scene, state));
+    if (!state->rate) return pls_node_fail(node, "rate: ds/dt, a number or an expression", "missing key 'rate' in states[%zu]", k);
     state->keep_density = strcmp(pls_node_get(node, "keep")->text, "density") == 0;
-    const pls_node *at = radius ? radius : target;
-    if (state->target != PLS_STATE_FREE && state->body == PLS_OF_WORLD)
-        return pls_node_fail(at, "give `of: NAME`", "a state of the world has no body whose size could follow it");
-    if (state->target != PLS_STATE_FREE && scene->shapes[scene->bodies[state->body].shape].ops->unbounded)
-        return pls_node_fail(at, NULL, "the unbounded shape of '%s' has no size that could follow a state",
-                             scene->bodies[state->body].name);
-    if (state->target != PLS_STATE_FREE && state->initial && !(state->initial->number > 0.0))
-        return pls_node_fail(state->initial, NULL, "the initial %s must be greater than 0",
-                             state->target == PLS_STATE_RADIUS ? "radius" : "scale");
     if (state->each && state->body == PLS_OF_WORLD)
         return pls_node_fail(pls_node_key(node, "each"), "give `of: NAME`", "'each' has a meaning only for a body entry");
     if (state->each && pls_node_get(node, "index"))
         return pls_node_fail(pls_node_key(node, "index"), NULL, "'each' and 'index' exclude each other");
 
     const pls_node *name = pls_node_get(node, "name");
-    if (!name && !radius) return pls_node_fail(node, "name: name for expressions", "missing key 'name' in states[%zu]", k);
+    if (!name && !pls_node_get(node, "radius"))
+        return pls_node_fail(node, "name: name for expressions", "missing key 'name' in states[%zu]", k);
     state->name = name ? name->text : scene->state_names[k];
     if (!state->name) PLS_TRY(pls_arena_print(&scene->arena, &state->name, "%s_radius", scene->bodies[state->body].name));
     return PLS_OK;

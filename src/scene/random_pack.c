@@ -1,12 +1,13 @@
 // random_pack.c -- loose random packings by random sequential addition.
 //
-// Bodies are placed one after the other at random places; a place where the body would come closer than `gap` to an earlier one is drawn again. The large
-// ones go first, because small ones still find room between them. Numbers are drawn per body (stream keyed by the body's number), so a body's radius and
-// tries depend on the seed alone, not on how often others tried.
+// Bodies are placed one after the other at random places; a place where the body would come closer than `gap` to an earlier one is drawn
+// again. The large ones go first, because small ones still find room between them. Numbers are drawn per body (stream keyed by the body's
+// number), so a body's radius and tries depend on the seed alone, not on how often others tried.
 //
-// Earlier bodies lie in grids, one level per factor of two in size: a level's cells are as wide as its largest sphere plus the gap. A new body is no larger
-// than any earlier one, so on each level its neighbours lie in the 3 x 3 x 3 cells around it, and a cell holds only few bodies of its own level. Cells are
-// found through a hash table, so a large box costs nothing. All in all the work is linear in the bodies for any ratio of sizes.
+// Earlier bodies lie in grids, one level per factor of two in size: a level's cells are as wide as its largest sphere plus the gap. A new
+// body is no larger than any earlier one, so on each level its neighbours lie in the 3 x 3 x 3 cells around it, and a cell holds only few
+// bodies of its own level. Cells are found through a hash table, so a large box costs nothing. All in all the work is linear in the bodies
+// for any ratio of sizes.
 
 #include "base/random.h"
 #include "base/sort.h"
@@ -91,7 +92,8 @@ static double draw_radius(const distribution *d, uint64_t seed, uint64_t body)
         case TABLE: return draw_table(d, pls_random_uniform(&random));
         case LOGNORMAL: break;
     }
-    // The median lies between the cuts, but they may be so narrow that drawing again and again takes too long: then the last draw is clamped.
+    // The median lies between the cuts, but they may be so narrow that drawing again and again takes too long: then the last draw is
+    // clamped.
     double r = d->median;
     for (int k = 0; k < 1000; ++k)
     {

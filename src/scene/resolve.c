@@ -1,7 +1,8 @@
 // resolve.c -- the tree against the schema.
 //
-// One walk checks every key, type and range, turns expressions over `vars` into numbers, puts defaults in and brings keys into the order of the table.
-// What remains as text where a number may stand is a formula of the run (over t, x, states, ...), compiled here once to see that it is right.
+// One walk checks every key, type and range, turns expressions over `vars` into numbers, puts defaults in and brings keys into the order of
+// the table. What remains as text where a number may stand is a formula of the run (over t, x, states, ...), compiled here once to see that
+// it is right.
 
 #include "scene/resolve.h"
 
@@ -18,22 +19,6 @@ static pls_status resolve_section(pls_resolver *r, pls_node *node, const char *s
 // ---------------------------------------------------------------------------------------------------------------------------------------
 // one number
 
-static void describe_range(const pls_key *key, char text[128])
-{
-    char lower[32], upper[32];
-    pls_format_double(lower, key->minimum);
-    pls_format_double(upper, key->maximum);
-    const char *least = key->flags & PLS_KEY_OPEN_MINIMUM ? "greater than" : "at least";
-    if (isfinite(key->minimum) && key->minimum == key->maximum)
-        snprintf(text, 128, "%s", lower);
-    else if (isfinite(key->minimum) && isfinite(key->maximum))
-        snprintf(text, 128, "%s %s and at most %s", least, lower, upper);
-    else if (isfinite(key->minimum))
-        snprintf(text, 128, "%s %s", least, lower);
-    else
-        snprintf(text, 128, "at most %s", upper);
-}
-
 static pls_status check_range(const pls_key *key, const pls_node *node, const char *label)
 {
     double value = node->number;
@@ -42,7 +27,7 @@ static pls_status check_range(const pls_key *key, const pls_node *node, const ch
     if (infinite || isnan(value)) return pls_node_fail(node, key->meaning, "'%s' in %s must be a finite number", key->name, label);
     if ((open ? value > key->minimum : value >= key->minimum) && value <= key->maximum) return PLS_OK;
     char range[128], number[32];
-    describe_range(key, range);
+    pls_schema_range(key, range);
     return pls_node_fail(node, key->meaning, "'%s' in %s must be %s%s%s, not %s", key->name, label, range, *key->unit ? " " : "", key->unit,
                          pls_format_double(number, value));
 }
@@ -76,6 +61,17 @@ static pls_status wrong_type(const pls_key *key, const pls_node *node, const cha
     return pls_node_fail(node, key->meaning, "'%s' in %s must be %s, not %s", key->name, label, wanted, pls_node_describe(node));
 }
 
+/// Where a word may stand in place of a number, say which.
+static void add_words(const pls_key *key, char *hint, size_t size)
+{
+    char word[64];
+    for (size_t k = 0; key->words && pls_schema_word(key->words, k, word); ++k)
+    {
+        size_t used = strlen(hint);
+        snprintf(hint + used, size - used, "%s%s", k ? ", " : used ? "  or one of: " : "one of: ", word);
+    }
+}
+
 /// An expression: a number when it uses constants only, else a formula of the run.
 static pls_status resolve_expression(pls_resolver *r, const pls_key *key, pls_node *node, const char *label, bool always_formula)
 {
@@ -85,6 +81,7 @@ static pls_status resolve_expression(pls_resolver *r, const pls_key *key, pls_no
     pls_expression *expression;
     pls_expression_error error;
     pls_status status = pls_expression_compile(node->text, &symbols, &expression, &error);
+    if (status == PLS_EXPRESSION) add_words(key, error.hint, sizeof error.hint);
     if (status == PLS_EXPRESSION)
         return pls_node_fail_at(node, error.offset, error.hint, "'%s' in %s: %s", key->name, label, pls_last_message());
     PLS_TRY(status);
@@ -153,7 +150,7 @@ static pls_status resolve_text(const pls_key *key, const pls_node *node, const c
 static pls_status resolve_name(const pls_key *key, const pls_node *node, const char *label)
 {
     PLS_TRY(resolve_text(key, node, label));
-    return pls_resolve_name(node, key->name);
+    return pls_resolve_name(node, strncmp(key->section, "observe", 7) == 0 ? "observer" : key->section);
 }
 
 pls_status pls_resolve_name(const pls_node *node, const char *what)
@@ -163,7 +160,7 @@ pls_status pls_resolve_name(const pls_node *node, const char *what)
     bool letter = size > 0 && strchr(good, node->text[0]) < strchr(good, '0');
     if (letter && size < PLS_NAME_SIZE && strspn(node->text, good) == size) return PLS_OK;
     return pls_node_fail(node, "letters, digits, '_', '-' and '.', beginning with a letter; at most 63 characters",
-                         "'%.80s' cannot be a %s", node->text, what);
+                         "'%.80s' cannot be the name of a %s", node->text, what);
 }
 
 static size_t split_words(const char *words, char list[16][64], const char *pointers[16])
@@ -312,9 +309,8 @@ static pls_status default_node(pls_resolver *r, const pls_key *key, const pls_no
     return PLS_OK;
 }
 
-static pls_status missing_key(const pls_resolver *r, const pls_node *map, const pls_key *key, const char *label)
+static pls_status missing_key(const pls_node *map, const pls_key *key, const char *label)
 {
-    (void)r;
     char hint[400];
     snprintf(hint, sizeof hint, "%s%s%s%s: %s", key->name, *key->unit ? " [" : "", key->unit, *key->unit ? "]" : "", key->meaning);
     return pls_node_fail(map, hint, "missing key '%s' in %s", key->name, label);
@@ -344,7 +340,7 @@ pls_status pls_resolve_map(pls_resolver *r, pls_node *node, const pls_key *keys,
         if (value && flat)
             return pls_node_fail(pls_node_key(node, key->name), NULL, "'%s' in %s has a meaning only with dimension: 2", key->name, label);
         if (!value && (flat || (!key->initial && !(key->flags & PLS_KEY_REQUIRED)))) continue;
-        if (!value && key->flags & PLS_KEY_REQUIRED) return missing_key(r, node, key, label);
+        if (!value && key->flags & PLS_KEY_REQUIRED) return missing_key(node, key, label);
         if (!value) PLS_TRY(default_node(r, key, node, &value));
         PLS_TRY(resolve_value(r, key, value, label));
         PLS_TRY(pls_node_new(arena, PLS_NODE_SCALAR, value, &name));
@@ -382,7 +378,7 @@ static pls_status resolve_choice(pls_resolver *r, const pls_key *key, pls_node *
 static pls_status resolve_named(pls_resolver *r, const pls_key *key, pls_node *node, const char *label)
 {
     if (node->kind != PLS_NODE_MAP) return wrong_type(key, node, label, "a map of names");
-    if (node->count == 0) return pls_node_fail(node, NULL, "'%s' in %s is empty", key->name, label);
+    if (node->count == 0) return pls_node_fail(node, key->meaning, "'%s' in %s is empty", key->name, label);
     for (size_t k = 0; k < node->count; ++k)
     {
         PLS_TRY(pls_resolve_name(node->key[k], key->sub));
@@ -401,16 +397,22 @@ static pls_status choose_section(const pls_key *key, const pls_node *entry, cons
         pls_schema_word(key->sub, 0, section);
         return PLS_OK;
     }
-    char hint[300] = "one of these keys says what it is: ", word[64];
-    for (size_t k = 0; pls_schema_word(key->sub, k, word); ++k)
+    const char *first[8];
+    size_t kinds = 0;
+    for (char word[64]; kinds < 8 && pls_schema_word(key->sub, kinds, word); ++kinds)
     {
         size_t count;
-        const char *first = pls_schema_keys(word, &count)->name;
+        first[kinds] = pls_schema_keys(word, &count)->name;
         snprintf(section, 64, "%s", word);
-        if (pls_node_get(entry, first)) return PLS_OK;
-        size_t used = strlen(hint);
-        snprintf(hint + used, sizeof hint - used, "%s%s", k ? ", " : "", first);
+        if (pls_node_get(entry, first[kinds])) return PLS_OK;
     }
+    char hint[300];
+    const char *word = "";
+    for (size_t k = 0; k < entry->count && !*word; ++k)
+    {
+        if (pls_nearest_word(entry->key[k]->text, first, kinds)) word = entry->key[k]->text;
+    }
+    pls_scene_hint(hint, sizeof hint, word, "one of these keys says what it is", first, kinds);
     return pls_node_fail(entry, hint, "cannot tell what %s is", label);
 }
 

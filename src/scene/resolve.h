@@ -14,15 +14,15 @@ typedef struct pls_resolver
 } pls_resolver;
 
 /// resolve.c. `label` names the map in messages ("shape 'ball'").
-pls_status pls_resolve_map(pls_resolver *resolver, pls_node *map, const pls_key *keys, size_t count, const char *label);
-pls_status pls_resolve_key(pls_resolver *resolver, const pls_key *key, pls_node *value, const char *label);
-pls_status pls_resolve_paths(pls_resolver *resolver, const pls_key *key, pls_node *list, const char *label);
+pls_status pls_resolve_map(pls_resolver *r, pls_node *node, const pls_key *keys, size_t count, const char *label);
+pls_status pls_resolve_key(pls_resolver *r, const pls_key *key, pls_node *node, const char *label);
+pls_status pls_resolve_paths(pls_resolver *r, const pls_key *key, pls_node *node, const char *label);
 /// Whether the text may be a name; `what` it would be ("material").
 pls_status pls_resolve_name(const pls_node *node, const char *what);
 
 /// resolve_scene.c: sections whose keys depend on their contents.
-pls_status pls_resolve_shapes(pls_resolver *resolver, const pls_key *key, pls_node *map, const char *label);
-pls_status pls_resolve_contact(pls_resolver *resolver, pls_node *entry, const char *label);
-pls_status pls_resolve_state(pls_resolver *resolver, pls_node *entry, const char *label);
+pls_status pls_resolve_shapes(pls_resolver *r, const pls_key *key, pls_node *map, const char *label);
+pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *label);
+pls_status pls_resolve_state(pls_resolver *r, pls_node *entry, const char *label);
 
 #endif

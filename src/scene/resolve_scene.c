@@ -1,4 +1,5 @@
-// resolve_scene.c -- the order in which a scene is resolved, and the maps whose keys depend on their contents: vars, shapes, contact laws, states.
+// resolve_scene.c -- the order in which a scene is resolved, and the maps whose keys depend on their contents: vars, shapes, contact laws,
+// states.
 //
 // The version, the dimension, vars, plugins and the names of states come first, because everything else is read with them.
 
@@ -53,7 +54,9 @@ static pls_status resolve_head(pls_resolver *r, pls_node *root)
         if (pls_nearest_word(root->key[k]->text, wanted, 1))
             return pls_node_fail(root->key[k], "did you mean 'particls'?", "unknown key '%.80s' in the scene", root->key[k]->text);
     }
-    if (!version) return pls_node_fail(root, "a scene begins with  particls: 1", "missing key 'particls' in the scene: the version of the scene language");
+    if (!version)
+        return pls_node_fail(root, "a scene begins with  particls: 1",
+                             "missing key 'particls' in the scene: the version of the scene language");
     if (version->kind != PLS_NODE_SCALAR || strcmp(version->text, "1") != 0)
         return pls_node_fail(version, "write  particls: 1", "this program reads version 1 of the scene language, not %s",
                              version->kind == PLS_NODE_SCALAR ? version->text : pls_node_describe(version));
@@ -112,15 +115,16 @@ static pls_status state_name(pls_resolver *r, const pls_node *entry, const pls_n
     if (given && given->kind == PLS_NODE_SCALAR) *name = given->text;
     if (given || !pls_node_get(entry, "radius") || !of || of->kind != PLS_NODE_SCALAR) return PLS_OK;
     *at = of;
-    size_t size = strcspn(of->text, "[");
-    const char *index = of->text + size;
-    int digits = (int)strspn(index + (*index != 0), "0123456789");
-    PLS_TRY(pls_arena_print(&r->scene->arena, name, "%.*s%s%.*s_radius", (int)size, of->text, digits ? "_" : "", digits,
-                            index + (*index != 0)));
-    for (char *c = (char *)(uintptr_t)*name; *c; ++c)
+    // "pack[12]" gives pack_12_radius; what cannot stand in a name becomes an underscore.
+    char *made;
+    size_t used = 0;
+    PLS_TRY(pls_arena_allocate(&r->scene->arena, &made, strlen(of->text) + sizeof "_radius", 1, "the name of a state"));
+    for (const char *c = of->text; *c; ++c)
     {
-        if (*c == '-' || *c == '.') *c = '_';
+        if (*c != ']') made[used++] = (char)(*c == '[' || *c == '-' || *c == '.' ? '_' : *c);
     }
+    memcpy(made + used, "_radius", sizeof "_radius");
+    *name = made;
     return PLS_OK;
 }
 

@@ -12,7 +12,12 @@
 #include <particls/plugin.h>
 #include <particls/scene.h>
 
-enum { PLS_ALL_MATERIALS = -1, PLS_OF_WORLD = -1 };
+enum {
+    PLS_ALL_MATERIALS = -1,
+    PLS_OF_WORLD = -1,
+    PLS_MIDDLE_BODY = -1,
+    PLS_ONLY_BODY = -2 ///< no index given: the entry must hold one body
+};
 
 typedef struct pls_scene_material
 {
@@ -50,7 +55,7 @@ typedef struct pls_scene_state
     const pls_node *rate;
     const pls_node *initial; ///< null: the body's own, or 0
     int body;                ///< entry, or PLS_OF_WORLD
-    long index;              ///< body within the entry; -1: the middle
+    long index;              ///< body within the entry; PLS_MIDDLE_BODY, PLS_ONLY_BODY
     bool each;
     pls_state_target target;
     bool keep_density;
@@ -89,14 +94,15 @@ struct pls_scene
     uint64_t hash;
 };
 
-/// The symbols an expression of these uses (PLS_USES_ bits) may name, in the fixed order t, x y z, vx vy vz, r, m, s, own name, states. `names` holds
-/// PLS_EXPRESSION_VARIABLES pointers. `own` is a further name for s, or null. LIMIT_EXCEEDED when there are too many states.
+/// The symbols an expression of these uses (PLS_USES_ bits) may name, in the fixed order t, x y z, vx vy vz, r, m, s, own name, states.
+/// `names` holds PLS_EXPRESSION_VARIABLES pointers. `own` is a further name for s, or null. LIMIT_EXCEEDED when there are too many states.
 pls_status pls_scene_symbols(const pls_scene *scene, unsigned uses, const char *own, const char **names, pls_symbols *symbols);
 
 /// Apply one `path=value` to the tree.
 pls_status pls_scene_override(pls_scene *scene, const char *text);
 
-/// resolve.c: check the tree against the schema; expressions over `vars` become numbers, defaults are put in, keys are brought into the order of the table.
+/// resolve.c: check the tree against the schema; expressions over `vars` become numbers, defaults are put in, keys are brought into the
+/// order of the table.
 pls_status pls_scene_resolve(pls_scene *scene);
 
 /// plugin.c

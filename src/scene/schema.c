@@ -1,12 +1,13 @@
 // schema.c -- the table.
 //
-// Rows of a section lie together, in the order in which scene.used.yaml and the reference page list them. Add a key: one row here, and one line
-// where parse_*.c or build.c uses it.
+// Rows of a section lie together, in the order in which scene.used.yaml and the reference page list them. Add a key: one row here, and one
+// line where parse_*.c or build.c uses it.
 
 #include "scene/schema.h"
 
 #include "base/text.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const pls_section sections[] = {
@@ -270,6 +271,22 @@ pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char
                      .minimum = parameter->minimum,
                      .maximum = parameter->maximum,
                      .meaning = parameter->meaning ? parameter->meaning : ""};
+}
+
+void pls_schema_range(const pls_key *key, char text[128])
+{
+    char lower[32], upper[32];
+    pls_format_double(lower, key->minimum);
+    pls_format_double(upper, key->maximum);
+    const char *least = key->flags & PLS_KEY_OPEN_MINIMUM ? "greater than" : "at least";
+    if (isfinite(key->minimum) && key->minimum == key->maximum)
+        snprintf(text, 128, "%s", lower);
+    else if (isfinite(key->minimum) && isfinite(key->maximum))
+        snprintf(text, 128, "%s %s and at most %s", least, lower, upper);
+    else if (isfinite(key->minimum))
+        snprintf(text, 128, "%s %s", least, lower);
+    else
+        snprintf(text, 128, "at most %s", upper);
 }
 
 bool pls_schema_word(const char *words, size_t k, char word[64])

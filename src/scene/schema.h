@@ -1,7 +1,7 @@
 // schema.h -- the one table of scene keys.
 //
-// The reader (resolve.c), suggestions for misspelt keys, scene.used.yaml, the JSON Schema and the reference page all come from it. Shapes and laws
-// bring their own tables of parameters (<particls/parameter.h>), which are turned into the same kind of rows.
+// The reader (resolve.c), suggestions for misspelt keys, scene.used.yaml, the JSON Schema and the reference page all come from it. Shapes
+// and laws bring their own tables of parameters (<particls/parameter.h>), which are turned into the same kind of rows.
 #ifndef PLS_SCENE_SCHEMA_H
 #define PLS_SCENE_SCHEMA_H
 
@@ -88,6 +88,9 @@ const pls_section *pls_schema_sections(size_t *count);
 const pls_key *pls_schema_keys(const char *section, size_t *count);
 /// A row for a parameter of a shape or law. `initial` holds 32 bytes for the default's text and must live as long as the row.
 pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char initial[32]);
+
+/// "greater than 0 and at most 1".
+void pls_schema_range(const pls_key *key, char text[128]);
 
 /// The k-th of the words in "a|b|c" into `word`; false when there are no more.
 bool pls_schema_word(const char *words, size_t k, char word[64]);

@@ -41,7 +41,8 @@ static pls_status json_number(pls_text *out, const pls_key *key, bool integer)
     char number[32];
     PLS_TRY(pls_text_print(out, "{\"anyOf\": [{\"type\": \"%s\"", integer ? "integer" : "number"));
     bool open = key->flags & PLS_KEY_OPEN_MINIMUM;
-    if (isfinite(key->minimum)) PLS_TRY(pls_text_print(out, ", \"%s\": %s", open ? "exclusiveMinimum" : "minimum", pls_format_double(number, key->minimum)));
+    if (isfinite(key->minimum))
+        PLS_TRY(pls_text_print(out, ", \"%s\": %s", open ? "exclusiveMinimum" : "minimum", pls_format_double(number, key->minimum)));
     if (isfinite(key->maximum)) PLS_TRY(pls_text_print(out, ", \"maximum\": %s", pls_format_double(number, key->maximum)));
     PLS_TRY(pls_text_print(out, "}, {\"type\": \"string\"}"));
     if (key->sub && key->type == PLS_KEY_NUMBER) PLS_TRY(pls_text_print(out, ", {\"$ref\": \"#/$defs/%s\"}", key->sub));
@@ -58,8 +59,10 @@ static pls_status json_list(pls_text *out, const pls_key *key, bool integer, int
 static pls_status json_sections(pls_text *out, const pls_key *key)
 {
     char section[64];
-    PLS_TRY(pls_text_print(out, "{\"type\": \"array\", \"minItems\": %d, \"items\": {\"anyOf\": [", key->flags & PLS_KEY_MAY_BE_EMPTY ? 0 : 1));
-    for (size_t k = 0; pls_schema_word(key->sub, k, section); ++k) PLS_TRY(pls_text_print(out, "%s{\"$ref\": \"#/$defs/%s\"}", k ? ", " : "", section));
+    PLS_TRY(
+        pls_text_print(out, "{\"type\": \"array\", \"minItems\": %d, \"items\": {\"anyOf\": [", key->flags & PLS_KEY_MAY_BE_EMPTY ? 0 : 1));
+    for (size_t k = 0; pls_schema_word(key->sub, k, section); ++k)
+        PLS_TRY(pls_text_print(out, "%s{\"$ref\": \"#/$defs/%s\"}", k ? ", " : "", section));
     return pls_text_print(out, "]}}");
 }
 
@@ -94,7 +97,8 @@ static pls_status json_type(pls_text *out, const pls_key *key)
             PLS_TRY(pls_text_print(out, ", "));
             PLS_TRY(json_list(out, key, false, 4, 4));
             return pls_text_print(out, "]}");
-        case PLS_KEY_FLAGS: return pls_text_print(out, "{\"type\": \"array\", \"minItems\": 2, \"maxItems\": 3, \"items\": {\"type\": \"boolean\"}}");
+        case PLS_KEY_FLAGS:
+            return pls_text_print(out, "{\"type\": \"array\", \"minItems\": 2, \"maxItems\": 3, \"items\": {\"type\": \"boolean\"}}");
         case PLS_KEY_POINTS:
         case PLS_KEY_PAIRS:
             PLS_TRY(pls_text_print(out, "{\"type\": \"array\", \"minItems\": 1, \"items\": "));
@@ -114,11 +118,15 @@ static pls_status json_type(pls_text *out, const pls_key *key)
         case PLS_KEY_CHOICE:
             return pls_text_print(out, "{\"allOf\": [{\"$ref\": \"#/$defs/%s\"}, {\"minProperties\": 1, \"maxProperties\": 1}]}", key->sub);
         case PLS_KEY_NAMED:
-            return pls_text_print(out, "{\"type\": \"object\", \"minProperties\": 1, \"additionalProperties\": {\"$ref\": \"#/$defs/%s\"}}", key->sub);
+            return pls_text_print(out, "{\"type\": \"object\", \"minProperties\": 1, \"additionalProperties\": {\"$ref\": \"#/$defs/%s\"}}",
+                                  key->sub);
         case PLS_KEY_LIST: return json_sections(out, key);
         case PLS_KEY_VARIABLES:
-            return pls_text_print(out, "{\"type\": [\"object\", \"null\"], \"additionalProperties\": {\"type\": [\"number\", \"string\"]}}");
-        case PLS_KEY_SHAPES: return pls_text_print(out, "{\"type\": \"object\", \"minProperties\": 1, \"additionalProperties\": {\"$ref\": \"#/$defs/shape\"}}");
+            return pls_text_print(out,
+                                  "{\"type\": [\"object\", \"null\"], \"additionalProperties\": {\"type\": [\"number\", \"string\"]}}");
+        case PLS_KEY_SHAPES:
+            return pls_text_print(out,
+                                  "{\"type\": \"object\", \"minProperties\": 1, \"additionalProperties\": {\"$ref\": \"#/$defs/shape\"}}");
     }
     return PLS_OK;
 }
@@ -188,7 +196,8 @@ static pls_status json_shape(pls_text *out)
     return pls_text_print(out, "}}");
 }
 
-/// A contact is open, because its other keys are the parameters of its law, which may come from a plugin; those of built-in laws are described.
+/// A contact is open, because its other keys are the parameters of its law, which may come from a plugin; those of built-in laws are
+/// described.
 static pls_status json_laws(pls_text *out)
 {
     PLS_TRY(pls_text_print(out, ", \"allOf\": ["));
@@ -274,7 +283,8 @@ static pls_status page_type(pls_text *out, const pls_key *key)
     char word[64];
     for (size_t k = 0; key->words && pls_schema_word(key->words, k, word); ++k)
         PLS_TRY(pls_text_print(out, "%s`%s`", k ? ", " : listed ? " " : " or ", word));
-    for (size_t k = 0; key->sub && pls_schema_word(key->sub, k, word); ++k) PLS_TRY(pls_text_print(out, "%s[%s](#%s)", k ? ", " : ": ", word, word));
+    for (size_t k = 0; key->sub && pls_schema_word(key->sub, k, word); ++k)
+        PLS_TRY(pls_text_print(out, "%s[%s](#%s)", k ? ", " : ": ", word, word));
     return PLS_OK;
 }
 
@@ -295,7 +305,7 @@ static pls_status page_variables(pls_text *out, unsigned uses)
     {
         unsigned bit;
         const char *names;
-    } all[] = {{PLS_USES_TIME, "t"},   {PLS_USES_PLACE, "x y z"}, {PLS_USES_VELOCITY, "vx vy vz"}, {PLS_USES_RADIUS, "r"},
+    } all[] = {{PLS_USES_TIME, "t"}, {PLS_USES_PLACE, "x y z"}, {PLS_USES_VELOCITY, "vx vy vz"}, {PLS_USES_RADIUS, "r"},
                {PLS_USES_MASS, "m"}, {PLS_USES_OWN, "s"},       {PLS_USES_STATES, "states"}};
     bool any = false;
     for (size_t k = 0; k < sizeof all / sizeof *all; ++k)
@@ -339,17 +349,21 @@ static pls_status page_parameters(pls_text *out, const char *name, const char *m
 static pls_status page_head(pls_text *out)
 {
     PLS_TRY(pls_text_print(
-        out, "# Scene reference\n\n"
-             "This page is made by the program from the table that its reader uses (`src/scene/schema.c`).\n\n"
-             "A scene is a YAML file. Units are SI. A vector is a list of as many numbers as the scene has dimensions. Paths are relative to the folder of the\n"
-             "scene. Unknown keys are errors. `particls run scene.yaml --set time.end=2 --set bodies[top].scale=2` changes values from the command line.\n\n"
-             "## Expressions\n\n"
-             "Wherever a number may stand, a text may stand that computes it from `vars`, `pi` and `e`: `kn: \"kn/2\"`. Some keys may also use the variables of the\n"
-             "column *may use*; they are then evaluated during the run:\n\n"
-             "| variable | meaning |\n|---|---|\n"
-             "| `t` | time [s] |\n| `x y z` | centre of the body [m] |\n| `vx vy vz` | its velocity [m/s] |\n| `r` | its bounding radius [m] |\n"
-             "| `m` | its mass [kg] |\n| `s` | the state itself |\n| states | the value of any state by its name |\n\n"
-             "Operators: `+ - * / ^`, `< <= > >= == !=`, `&&`, `||`, `condition ? a : b`. `log` is the natural logarithm. Functions:"));
+        out,
+        "# Scene reference\n\n"
+        "This page is made by the program from the table that its reader uses (`src/scene/schema.c`).\n\n"
+        "A scene is a YAML file. Units are SI. A vector is a list of as many numbers as the scene has dimensions. Paths are relative to "
+        "the folder of the\n"
+        "scene. Unknown keys are errors. `particls run scene.yaml --set time.end=2 --set bodies[top].scale=2` changes values from the "
+        "command line.\n\n"
+        "## Expressions\n\n"
+        "Wherever a number may stand, a text may stand that computes it from `vars`, `pi` and `e`: `kn: \"kn/2\"`. Some keys may also use "
+        "the variables of the\n"
+        "column *may use*; they are then evaluated during the run:\n\n"
+        "| variable | meaning |\n|---|---|\n"
+        "| `t` | time [s] |\n| `x y z` | centre of the body [m] |\n| `vx vy vz` | its velocity [m/s] |\n| `r` | its bounding radius [m] |\n"
+        "| `m` | its mass [kg] |\n| `s` | the state itself |\n| states | the value of any state by its name |\n\n"
+        "Operators: `+ - * / ^`, `< <= > >= == !=`, `&&`, `||`, `condition ? a : b`. `log` is the natural logarithm. Functions:"));
     size_t count;
     const char *const *functions = pls_expression_functions(&count);
     for (size_t k = 0; k < count; ++k) PLS_TRY(pls_text_print(out, "%s`%s`", k ? ", " : " ", functions[k]));
@@ -381,8 +395,10 @@ static pls_status give_text(pls_status (*write)(pls_text *), char **text)
     *text = NULL;
     pls_text out = {0};
     pls_status status = write(&out);
-    if (status == PLS_OK) *text = out.data;
-    else pls_text_free(&out);
+    if (status == PLS_OK)
+        *text = out.data;
+    else
+        pls_text_free(&out);
     return status;
 }
 

@@ -1,7 +1,7 @@
 // used.c -- the resolved tree as YAML text: scene.used.yaml, and what the scene's hash is taken of.
 //
-// Top-level keys and the entries of lists and maps of names stand on lines of their own, what is within them in flow style. Numbers are written with the
-// fewest digits that read back to the same bits, so the text loads to the same scene.
+// Top-level keys and the entries of lists and maps of names stand on lines of their own, what is within them in flow style. Numbers are
+// written with the fewest digits that read back to the same bits, so the text loads to the same scene.
 
 #include "scene/scene_data.h"
 
@@ -38,7 +38,8 @@ static bool is_plain(const char *text)
     return strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == strlen(text) && (*text < '0' || *text > '9');
 }
 
-/// For the hash a file counts with its name and contents, wherever it lies. A plugin counts with its name: compiled anew it is still the same scene.
+/// For the hash a file counts with its name and contents, wherever it lies. A plugin counts with its name: compiled anew it is still the
+/// same scene.
 static pls_status print_file(printer *p, const char *path)
 {
     const char *slash = strrchr(path, '/');

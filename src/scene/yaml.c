@@ -190,9 +190,8 @@ static pls_status keep_anchor(reader *r, struct fy_token *token, pls_node *node)
 
 static pls_status read_node(reader *r, struct fy_event *event, int depth, pls_node **node);
 
-static pls_status check_key(reader *r, const pls_node *map, const pls_node *key)
+static pls_status check_key(const pls_node *map, const pls_node *key)
 {
-    (void)r;
     if (key->kind != PLS_NODE_SCALAR) return pls_node_fail(key, NULL, "a key must be a text, not %s", pls_node_describe(key));
     if (map->count >= MAX_MAP_KEYS) return pls_node_fail(key, NULL, "more than %d keys in one map", MAX_MAP_KEYS);
     const pls_node *first = pls_node_key(map, key->text);
@@ -213,11 +212,12 @@ static pls_status read_map(reader *r, pls_node *map, int depth)
         pls_status status = end ? PLS_OK : read_node(r, event, depth, &key);
         fy_parser_event_free(r->parser, event);
         if (end || status != PLS_OK) return status;
-        PLS_TRY(check_key(r, map, key));
+        PLS_TRY(check_key(map, key));
         PLS_TRY(next_event(r, &event));
         status = read_node(r, event, depth, &value);
         fy_parser_event_free(r->parser, event);
         PLS_TRY(status);
+        if (value->line == 0) value->line = key->line, value->column = key->column; // nothing is written there
         PLS_TRY(pls_node_append(r->arena, map, key, value));
     }
 }
@@ -233,6 +233,7 @@ static pls_status read_list(reader *r, pls_node *list, int depth)
         pls_status status = end ? PLS_OK : read_node(r, event, depth, &item);
         fy_parser_event_free(r->parser, event);
         if (end || status != PLS_OK) return status;
+        if (item->line == 0) item->line = list->line, item->column = list->column;
         PLS_TRY(pls_node_append(r->arena, list, NULL, item));
     }
 }
@@ -249,7 +250,7 @@ static pls_status read_scalar(reader *r, struct fy_token *token, pls_node *node)
 static pls_status read_node(reader *r, struct fy_event *event, int depth, pls_node **node)
 {
     const struct fy_mark *mark = fy_event_start_mark(event);
-    int line = mark ? mark->line + 1 : 1, column = mark ? mark->column + 1 : 1;
+    int line = mark ? mark->line + 1 : 0, column = mark ? mark->column + 1 : 0;
     struct fy_token *tag = NULL, *name = NULL;
     pls_node_kind kind = PLS_NODE_SCALAR;
     if (event->type == FYET_SCALAR)

@@ -23,6 +23,14 @@ static void set_velocity(pls_body_place *p, pls_vec3 v) { p->vx = v.x, p->vy = v
 static void set_spin(pls_body_spin *s, pls_vec3 w) { s->wx = w.x, s->wy = w.y, s->wz = w.z; }
 static void set_quat(pls_body_orientation *o, pls_quat q) { *o = (pls_body_orientation){q.w, q.x, q.y, q.z}; }
 
+/// Rotation by q / |q|: a quaternion is of unit length only to round-off, and over millions of steps a bias in it would add up in |L|.
+static pls_vec3 turn_to_world(pls_quat q, pls_vec3 a)
+{
+    pls_vec3 u = pls_vec(q.x, q.y, q.z), t = pls_scale(pls_cross(u, a), 2.0 / (q.w * q.w + pls_dot(u, u)));
+    return pls_add(a, pls_add(pls_scale(t, q.w), pls_cross(u, t)));
+}
+static pls_vec3 turn_to_body(pls_quat q, pls_vec3 a) { return turn_to_world(pls_quat_conjugate(q), a); }
+
 /// Rotation by the vector angle `a` [rad].
 static pls_quat rotation_by(pls_vec3 a)
 {
@@ -116,13 +124,13 @@ static void split_turn(pls_vec3 *l, pls_quat *q, const pls_body_mass *m, int axi
     double angle = h * (axis == 0 ? l->x / m->ix : axis == 1 ? l->y / m->iy : l->z / m->iz);
     pls_vec3 about = pls_vec(axis == 0 ? angle : 0.0, axis == 1 ? angle : 0.0, axis == 2 ? angle : 0.0);
     pls_quat step = rotation_by(about);
-    *l = pls_rotate_back(step, *l);
+    *l = turn_to_body(step, *l);
     *q = pls_quat_multiply(*q, step);
 }
 
 static void rotate_freely(pls_vec3 momentum, pls_quat *q, const pls_body_mass *m, double dt)
 {
-    pls_vec3 l = pls_rotate_back(*q, momentum);
+    pls_vec3 l = turn_to_body(*q, momentum);
     split_turn(&l, q, m, 0, 0.5 * dt);
     split_turn(&l, q, m, 1, 0.5 * dt);
     split_turn(&l, q, m, 2, dt);
@@ -131,7 +139,7 @@ static void rotate_freely(pls_vec3 momentum, pls_quat *q, const pls_body_mass *m
     *q = pls_quat_unit(*q);
 }
 
-static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m) { return pls_rotate(q, divide(pls_rotate_back(q, momentum), m)); }
+static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m) { return turn_to_world(q, divide(turn_to_body(q, momentum), m)); }
 
 static void drift_anisotropic(pls_world *world, pls_special *s)
 {
@@ -139,7 +147,7 @@ static void drift_anisotropic(pls_world *world, pls_special *s)
     const pls_body_mass *m = &b->mass[s->row];
     const pls_body_load *now = &b->load[s->row], *before = &b->load_before[s->row];
     pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz), sum = pls_add(torque, pls_vec(before->tx, before->ty, before->tz));
-    pls_vec3 momentum = pls_rotate(s->orientation, multiply(pls_rotate_back(s->orientation, s->spin), m));
+    pls_vec3 momentum = turn_to_world(s->orientation, multiply(turn_to_body(s->orientation, s->spin), m));
     s->half_spin = pls_add(momentum, pls_scale(torque, 0.5 * world->dt));
     pls_quat q = s->orientation;
     rotate_freely(s->half_spin, &q, m, world->dt);
@@ -179,7 +187,7 @@ static pls_status drift_driven(pls_world *world, pls_special *s)
     pls_vec3 force = pls_vec(now->fx, now->fy, now->fz), sum = pls_add(force, pls_vec(before->fx, before->fy, before->fz));
     if (motion->about)
     {
-        pls_vec3 arm = pls_rotate(rotation_by(pls_scale(w_mid, dt)), pls_sub(s->position, motion->centre));
+        pls_vec3 arm = turn_to_world(rotation_by(pls_scale(w_mid, dt)), pls_sub(s->position, motion->centre));
         set_position(p, pls_add(motion->centre, arm));
         s->driven_velocity = pls_cross(s->driven_spin, arm);
         s->half_velocity = v_mid;

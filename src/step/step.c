@@ -111,6 +111,7 @@ pls_status pls_step(pls_world *world)
     pls_domain_at(&world->domain, time);
     PLS_TRY(pls_neighbours_refresh(world));
     find_contacts_and_forces(world, 0.5 * world->dt);
+    PLS_TRY(pls_book_parted(world));
     PLS_TRY(finish_bodies(world, world->dt, time));
     pls_special_finish(world);
     ++world->step;

@@ -61,31 +61,33 @@ typedef struct gathered
     double power, work;
 } gathered;
 
-static inline void gather_pairs(const pls_pair_list *list, size_t row, double radius, gathered *g)
+/// List the touching entries of a row anew.
+static __attribute__((noinline)) void list_touching(pls_pair_list *list, size_t row)
 {
-    enum { CHUNK = 64 };
-    uint32_t touching[CHUNK];
-    const uint32_t *entry = list->pairs.entry, end = list->pairs.start[row + 1];
-    for (uint32_t k = list->pairs.start[row]; k < end;)
-    {
-        uint32_t stop = end - k > CHUNK ? k + CHUNK : end, count = 0;
-        for (; k < stop; ++k) // no branch: which candidates touch is hard to foresee
-        {
-            touching[count] = entry[k];
-            count += (uint32_t)(list->touch[entry[k] >> 4] >> ((entry[k] >> 1) & 7)) & 1u;
-        }
-        for (uint32_t m = 0; m < count; ++m)
-        {
-            const double *slot = list->slot + (size_t)(touching[m] >> 1) * PLS_SLOT;
-            const int64_t sign = (int64_t)((uint64_t)touching[m] << 63);
-            pls_v4 low = pls_v4_load(slot), high = pls_v4_load(slot + 4);
-            g->force += (pls_v4)((pls_v4i)low ^ (pls_v4i){sign, sign, sign, sign});
-            g->torque += (radius - low[3]) * only_first_three(high);
-            const float *booked = (const float *)(slot + 7);
-            g->power += (double)booked[0];
-            g->work += (double)booked[1];
-        }
-    }
+    uint32_t count = 0, *to = list->near_entry + list->pairs.start[row];
+    for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k)
+        if (pls_pair_touches(list, list->pairs.entry[k] >> 1)) to[count++] = list->pairs.entry[k];
+    list->near_count[row] = count;
+    list->near_stale[row] = 0;
+}
+
+static inline void add_pair(const pls_pair_list *list, uint32_t entry, double radius, gathered *g)
+{
+    const double *slot = list->slot + (size_t)(entry >> 1) * PLS_SLOT;
+    const int64_t sign = (int64_t)((uint64_t)entry << 63);
+    pls_v4 low = pls_v4_load(slot), high = pls_v4_load(slot + 4);
+    g->force += (pls_v4)((pls_v4i)low ^ (pls_v4i){sign, sign, sign, sign});
+    g->torque += (radius - low[3]) * only_first_three(high);
+    const float *booked = (const float *)(slot + 7);
+    g->power += (double)booked[0];
+    g->work += (double)booked[1];
+}
+
+static inline void gather_pairs(pls_pair_list *list, size_t row, double radius, gathered *g)
+{
+    if (list->near_stale[row]) list_touching(list, row);
+    const uint32_t *entry = list->near_entry + list->pairs.start[row], *end = entry + list->near_count[row];
+    for (; entry < end; ++entry) add_pair(list, *entry, radius, g);
 }
 
 static inline void gather_walls(const pls_pair_list *list, size_t row, gathered *g)
@@ -111,36 +113,40 @@ static inline void gather_walls(const pls_pair_list *list, size_t row, gathered 
     }
 }
 
-void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, const pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
-                                 const double *torque)
+static inline void finish_row(pls_bodies *bodies, size_t row, double dt, const gathered *g)
 {
     const double half = 0.5 * dt, quarter = 0.25 * dt;
+    pls_body_place *p = &bodies->place[row];
+    pls_body_spin *s = &bodies->spin[row];
+    const pls_body_load *now = &bodies->load[row];
+    pls_body_load *before = &bodies->load_before[row];
+    pls_v4 f = only_first_three(g->force), t = only_first_three(g->torque);
+    pls_v4 mean = only_first_three(pls_v4_load(&now->fx)) * p->inv_mass + only_first_three(pls_v4_load(&before->fx)) * p->inv_mass;
+    pls_v4 mean_turn = only_first_three(pls_v4_load(&now->tx)) * s->inv_inertia + only_first_three(pls_v4_load(&before->tx)) * s->inv_inertia;
+    pls_v4_store(&p->vx, pls_v4_load(&p->vx) - quarter * mean + half * (f * p->inv_mass));
+    pls_v4_store(&s->wx, pls_v4_load(&s->wx) - quarter * mean_turn + half * (t * s->inv_inertia));
+
+    double power = 0.5 * g->power; // half of each contact's dissipation to either body
+    bodies->energy_slid[row] += 0.5 * g->work;
+    f[3] = power;
+    t[3] = now->energy_damped + half * (now->damping_power + power);
+    pls_v4_store(&before->fx, f);
+    pls_v4_store(&before->tx, t);
+}
+
+void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
+                                 const double *torque)
+{
     for (size_t row = first; row < last; ++row)
     {
-        pls_body_place *p = &bodies->place[row];
-        pls_body_spin *s = &bodies->spin[row];
-        const pls_body_load *now = &bodies->load[row];
-        pls_body_load *before = &bodies->load_before[row];
         gathered g = {pls_v4_set(0.0), pls_v4_set(0.0), 0.0, 0.0};
         if (force)
         {
             g.force = pls_v4_load(force + 4 * (row - first));
             g.torque = pls_v4_load(torque + 4 * (row - first));
         }
-        gather_pairs(list, row, p->radius, &g);
+        gather_pairs(list, row, bodies->place[row].radius, &g);
         gather_walls(list, row, &g);
-
-        pls_v4 f = only_first_three(g.force), t = only_first_three(g.torque);
-        pls_v4 mean = only_first_three(pls_v4_load(&now->fx)) * p->inv_mass + only_first_three(pls_v4_load(&before->fx)) * p->inv_mass;
-        pls_v4 mean_turn = only_first_three(pls_v4_load(&now->tx)) * s->inv_inertia + only_first_three(pls_v4_load(&before->tx)) * s->inv_inertia;
-        pls_v4_store(&p->vx, pls_v4_load(&p->vx) - quarter * mean + half * (f * p->inv_mass));
-        pls_v4_store(&s->wx, pls_v4_load(&s->wx) - quarter * mean_turn + half * (t * s->inv_inertia));
-
-        double power = 0.5 * g.power; // half of each contact's dissipation to either body
-        bodies->energy_slid[row] += 0.5 * g.work;
-        f[3] = power;
-        t[3] = now->energy_damped + half * (now->damping_power + power);
-        pls_v4_store(&before->fx, f);
-        pls_v4_store(&before->tx, t);
+        finish_row(bodies, row, dt, &g);
     }
 }

@@ -110,6 +110,7 @@ void pls_world_destroy(pls_world *world)
     pls_release(&world->state_rate);
     pls_release(&world->binding);
     pls_release(&world->work);
+    pls_release(&world->parted);
     pls_release(&world->special);
     pls_release(&world);
 }

@@ -90,6 +90,8 @@ struct pls_world
     pls_pair_list list;
     pls_contact_memory memory; ///< filled when the list is about to change
     bool memory_holds;         ///< `memory`, not the list, has the contacts (between a change of bodies and the next list)
+    struct pls_parted *parted; ///< contacts that ended in this step
+    size_t parted_capacity;
     pls_contact_work *work;    ///< one per thread
     int work_count;
     pls_skin_tuner tuner;
@@ -125,6 +127,10 @@ void pls_neighbours_moved(pls_world *world, double largest_square);
 pls_status pls_neighbours_refresh(pls_world *world);
 /// Move what contacts remember out of the list, before bodies, laws or rows change.
 pls_status pls_neighbours_detach(pls_world *world);
+
+// parting.c
+/// Book what the springs of contacts that ended in this step still held.
+pls_status pls_book_parted(pls_world *world);
 
 // step.c
 /// Size and centre of the arrangement of now.

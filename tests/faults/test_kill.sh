@@ -29,6 +29,8 @@ contact:
   - {between: [grain, grain], law: viscoelastic, kn: 20000, ks: 10000, cn: 4, cs: 2, friction: 0.4}
 forces:
   - {gravity: [0, 0, -9.81]}
+states:
+  - {of: "pack[100]", radius: {rate: "0.02 * cos(5 * t)"}}
 time: {end: 0.4, dt: 1.0e-4}
 observe:
   - {collection: all, name: heap, quantities: [stress, fabric, coordination, energy, momentum], every: 0.002}

@@ -87,7 +87,7 @@ expect 2 "particls" run .
 expect 2 "empty.yaml" run empty.yaml
 expect 2 "density" run misspelt.yaml
 expect 2 "step" run unstable.yaml
-expect 2 "small.yaml" run small.yaml --set time.ende=3
+expect 2 "did you mean 'end'?" run small.yaml --set time.ende=3
 expect 2 "nothing.yaml" check nothing.yaml
 expect 2 "density" check misspelt.yaml
 expect 2 "step" check unstable.yaml

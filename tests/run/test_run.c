@@ -319,6 +319,28 @@ static void a_finished_run_is_left_alone_unless_asked_for_more(void **state)
     expect_same_folder("finished", "reference", "frames");
 }
 
+static void a_finished_run_that_was_killed_while_tidying_up_is_tidied_up(void **state)
+{
+    (void)state;
+    must(run_broken("untidy", UINT64_MAX, PLS_OK));
+    must(pls_write_file("untidy/checkpoint/000000500.h5", "old", 3));
+    must(pls_write_file("untidy/checkpoint/000000990.h5", "interim", 7));
+    breaker quiet = {0};
+    must(resume("untidy", &quiet));
+    assert_non_null(strstr(quiet.events, "has finished"));
+    expect_same_results("untidy", "reference");
+
+    must(pls_run_remove("untidy/summary.json")); // by hand
+    must(resume("untidy", &quiet));
+    expect_same_results("untidy", "reference");
+    char *reference = summary_of("reference");
+    char *summary = summary_of("untidy");
+    assert_non_null(strstr(summary, "\"finished\": true"));
+    assert_string_equal(strstr(summary, "\"state_hash\""), strstr(reference, "\"state_hash\""));
+    pls_release(&reference);
+    pls_release(&summary);
+}
+
 static void another_run_is_not_overwritten_by_accident(void **state)
 {
     (void)state;
@@ -337,12 +359,12 @@ static void another_run_is_not_overwritten_by_accident(void **state)
 static void overwriting_leaves_other_files_alone(void **state)
 {
     (void)state;
-    must(pls_make_directory("shared"));
-    must(pls_write_file("shared/notes.txt", "mine", 4));
-    must(run_broken("shared", UINT64_MAX, PLS_OK));
-    must(run_broken("shared", UINT64_MAX, PLS_OK));
-    assert_true(exists("shared", "notes.txt"));
-    expect_same_results("shared", "reference");
+    must(pls_make_directory("with_notes"));
+    must(pls_write_file("with_notes/notes.txt", "mine", 4));
+    must(run_broken("with_notes", UINT64_MAX, PLS_OK));
+    must(run_broken("with_notes", UINT64_MAX, PLS_OK));
+    assert_true(exists("with_notes", "notes.txt"));
+    expect_same_results("with_notes", "reference");
 }
 
 static void two_processes_cannot_run_in_one_directory(void **state)
@@ -427,6 +449,7 @@ int main(void)
         cmocka_unit_test(a_run_killed_before_its_first_checkpoint_starts_over),
         cmocka_unit_test(resuming_nothing_says_so),
         cmocka_unit_test(a_finished_run_is_left_alone_unless_asked_for_more),
+        cmocka_unit_test(a_finished_run_that_was_killed_while_tidying_up_is_tidied_up),
         cmocka_unit_test(another_run_is_not_overwritten_by_accident),
         cmocka_unit_test(overwriting_leaves_other_files_alone),
         cmocka_unit_test(two_processes_cannot_run_in_one_directory),

@@ -47,6 +47,7 @@ static pls_body_id add_sphere(const heap_setup *setup, const verify_scene *scene
     double jitter = 0.9 * (0.5 - r);
     pls_vec3 d = pls_vec(2 * pls_random_uniform(&random) - 1, 2 * pls_random_uniform(&random) - 1, 2 * pls_random_uniform(&random) - 1);
     pls_vec3 v = pls_vec(pls_random_normal(&random), pls_random_normal(&random), pls_random_normal(&random)), w = pls_scale(v, -2.0);
+    v = pls_scale(v, 4.0); // so fast that they have met after some hundred steps
     if (flat) d.z = v.z = w.x = w.y = 0.0;
     pls_body_def ball = verify_ball_def(scene, r, mass, pls_add(position, pls_scale(d, jitter)), v);
     ball.angular_velocity = w;
@@ -107,7 +108,7 @@ heap heap_open(heap_setup given)
         if (!flat) verify_wall(&scene, pls_vec(0, 0, 0), pls_vec(0, 1, 0));
         if (!flat) verify_wall(&scene, pls_vec(0, side, 0), pls_vec(0, -1, 0));
     }
-    MUST(pls_world_add_gravity(scene.world, pls_scale(up, -10.0)));
+    MUST(pls_world_add_gravity(scene.world, pls_scale(up, -100.0)));
     if (setup->states) add_states(&scene, first);
     return (heap){given, scene, middle};
 }

@@ -25,7 +25,7 @@ static const char small_scene_text[] =
     "forces:\n"
     "  - {gravity: [0, 0, -9.81]}\n"
     "states:\n"
-    "  - {of: pack, radius: {rate: \"0.01 * cos(5 * t)\"}}\n"
+    "  - {of: pack, index: 0, radius: {rate: \"0.01 * cos(5 * t)\"}}\n"
     "time: {end: 0.1, dt: 1.0e-4}\n"
     "observe:\n"
     "  - {collection: all, name: heap, quantities: [stress, coordination, energy], every: 0.002}\n"

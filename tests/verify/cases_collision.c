@@ -10,6 +10,13 @@ enum { PHASES = 20 };
 
 static double phase_of(int k) { return (k + 0.5) / PHASES; }
 
+/// Time step of phase k: about `duration`/`steps`, but never a whole fraction of it, so that the end of contact falls at any part of a step too.
+static double step_of(double duration, int steps, int k)
+{
+    double golden = 0.61803398874989485 * (k + 1);
+    return duration / (steps + golden - floor(golden));
+}
+
 // ---- head-on ----
 
 typedef struct head_on
@@ -60,7 +67,7 @@ void case_contact_time(verify_sheet *sheet)
         double m_eff = pairs[k].mass_2 / (1.0 + pairs[k].mass_2), exact = pi * sqrt(m_eff / 1e4), worst = exact;
         for (int j = 0; j < PHASES; ++j)
         {
-            head_on_setup p = {pairs[k].dimension, 1.0, pairs[k].mass_2, 1e4, 0.0, exact / 1000, phase_of(j)};
+            head_on_setup p = {pairs[k].dimension, 1.0, pairs[k].mass_2, 1e4, 0.0, step_of(exact, 1000, j), phase_of(j)};
             double measured = collide_head_on(&p).contact_time;
             if (fabs(measured - exact) > fabs(worst - exact)) worst = measured;
         }
@@ -79,7 +86,7 @@ void case_elastic_energy(verify_sheet *sheet)
         steps[level] = 250 << level;
         for (int j = 0; j < PHASES; ++j)
         {
-            head_on_setup p = {3, 1.0, 1.0, 1e4, 0.0, exact / steps[level], phase_of(j)};
+            head_on_setup p = {3, 1.0, 1.0, 1e4, 0.0, step_of(exact, (int)steps[level], j), phase_of(j)};
             double e = collide_head_on(&p).restitution, change = fabs(e * e - 1.0);
             worst = fmax(worst, change);
             sum += change;
@@ -101,7 +108,7 @@ void case_restitution(verify_sheet *sheet)
         double exact = exp(-pi * zeta / damped), sum = 0.0, worst = exact;
         for (int j = 0; j < PHASES; ++j)
         {
-            head_on_setup p = {3, 1.0, 1.0, kn, 2.0 * zeta * sqrt(kn * m_eff), pi / (omega * damped) / 1000, phase_of(j)};
+            head_on_setup p = {3, 1.0, 1.0, kn, 2.0 * zeta * sqrt(kn * m_eff), step_of(pi / (omega * damped), 1000, j), phase_of(j)};
             double e = collide_head_on(&p).restitution;
             sum += e;
             if (fabs(e - exact) > fabs(worst - exact)) worst = e;
@@ -308,11 +315,11 @@ static void compare_angles(verify_sheet *sheet, oblique_setup p)
             double angle = sheet->thorough ? 1.0 + 2.0 * k : coarse[k], worst = 0.0, mean_tangential = 0.0;
             p.tangential = p.v_n * tan(angle * pi / 180.0);
             p.spin = spinning ? -1.5 * p.v_n / p.body[0].radius : 0.0;
-            p.dt = duration / 1000.0;
             oblique_result exact = solve_oblique(&p);
             for (int j = 0; j < phases; ++j)
             {
                 p.phase = (j + 0.5) / phases;
+                p.dt = step_of(duration, 1000, j);
                 oblique_result measured = simulate_oblique(&p);
                 worst = fmax(worst, oblique_error(&p, &measured, &exact));
                 mean_tangential += measured.tangential[0] / phases;

@@ -135,7 +135,8 @@ void case_hertz_collision(verify_sheet *sheet)
 
 void case_mindlin(verify_sheet *sheet)
 {
-    // Two driven spheres at a fixed overlap, one moved sideways by a distance far below sliding.
+    // Two spheres at a fixed overlap, one moved sideways by a distance far below sliding. The other may turn about the normal, because forces between two
+    // bodies that nothing can move are not looked for.
     pls_material_id other;
     double r1 = 0.5, r2 = 0.8, radius = r1 * r2 / (r1 + r2), overlap = 1e-3, shift = 1e-9, dt = 1e-6;
     double exact = 8.0 * effective_shear(soft, hard) * sqrt(radius * overlap);
@@ -146,7 +147,7 @@ void case_mindlin(verify_sheet *sheet)
     pls_body_id id = verify_add(&scene, &ball);
     ball = verify_ball_def(&scene, r2, 1.0, pls_vec(r1 + r2 - overlap, 0, 0), pls_vec(0, 0, 0));
     ball.material = other;
-    ball.motion.axes = PLS_AXIS_ALL;
+    ball.motion.axes = PLS_AXIS_ALL & ~(unsigned)PLS_AXIS_RX;
     verify_add(&scene, &ball);
     MUST(pls_world_run(scene.world, 100));
     sheet_relative(sheet, -verify_motion(scene.world, id).force.y / shift, exact, 1e-5,

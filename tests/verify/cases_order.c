@@ -70,6 +70,7 @@ static order_states add_states(const verify_scene *scene, pls_body_id body)
     order_states states;
     pls_state_def def = pls_default_state_def();
     def = (pls_state_def){.name = "size", .body = body, .components = 1, .initial = {1.0}, .target = PLS_STATE_SCALE, .cookie = def.cookie};
+    def.keep_density = scene->dimension == 2; // discs grow, spheres swell: mass changes or only inertia
     def.rate = follow_velocity;
     MUST(pls_world_add_state(scene->world, &def, &states.scale));
     def = (pls_state_def){.name = "warmth", .components = 1, .initial = {0.5}, .target = PLS_STATE_FREE, .cookie = def.cookie};

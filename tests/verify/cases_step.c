@@ -45,13 +45,14 @@ typedef struct packing
     double kn, ks, cn, cs;
 } packing;
 
-/// Periodic close packing with 1e-3 overlap: face-centred cubic in 3D (12 contacts), triangular in 2D (6), disturbed by small random velocities.
+/// Periodic close packing, overlapping so little (1e-6) that its prestress does not let rows of spheres buckle: face-centred cubic in 3D (12 contacts), triangular in 2D (6), disturbed by small random velocities.
 static verify_scene open_packing(const packing *p, double dt)
 {
     enum { CELLS = 4 };
     static const double fcc[4][3] = {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 0, 0.5}, {0, 0.5, 0.5}}, triangular[2][3] = {{0, 0, 0}, {0.5, 0.5, 0}};
+    const double tight = 1.0 - 1e-6;
     bool flat = p->dimension == 2;
-    double a = flat ? 2.0 * 0.999 : 2.0 * sqrt(2.0) * 0.999;
+    double a = flat ? 2.0 * tight : 2.0 * sqrt(2.0) * tight;
     pls_vec3 cell = flat ? pls_vec(a, a * sqrt(3.0), 0) : pls_vec(a, a, a);
     pls_world_def def = pls_default_world_def(p->dimension);
     def.dt = dt;
@@ -74,9 +75,9 @@ static verify_scene open_packing(const packing *p, double dt)
                     pls_vec3 w = pls_vec(pls_random_normal(&random), pls_random_normal(&random), pls_random_normal(&random));
                     pls_body_def ball = verify_ball_def(
                         &scene, 1.0, 1.0, pls_vec((x + s[0] + 0.1) * cell.x, (y + s[1] + 0.1) * cell.y, (z + s[2] + 0.1) * cell.z),
-                        pls_scale(v, 1e-8));
+                        pls_scale(v, 1e-9));
                     if (flat) ball.position.z = ball.velocity.z = 0.0, w.x = w.y = 0.0;
-                    ball.angular_velocity = pls_scale(w, 1e-8);
+                    ball.angular_velocity = pls_scale(w, 1e-9);
                     verify_add(&scene, &ball);
                 }
     return scene;
