@@ -115,6 +115,9 @@ static pls_status print_step(pls_world *world, double end)
         printf("stable step        %.6g s, limited by the %s at body %u with %d contacts (M^-1 K %.4g 1/s^2, M^-1 C %.4g 1/s)\n",
                estimate.dt, estimate.damping_limits ? "dashpots" : "springs", estimate.body, estimate.contacts, estimate.stiffness,
                estimate.damping);
+        if (pls_world_dt(world) > estimate.dt)
+            printf("                   That is a bound from single bodies; the step passes the finer test of the whole, or allow_unstable "
+                   "is set\n");
     }
     printf("steps              %.0f to t = %.6g s\n", steps_to_end(world, end), end);
     return PLS_OK;

@@ -111,6 +111,10 @@ pls_status pls_world_add_material(pls_world *world, const pls_material_def *def,
 pls_status pls_world_add_group(pls_world *world, const char *name, pls_group_id *id);
 /// The law between two materials (either order). Replaces an earlier one; contacts then begin anew.
 pls_status pls_world_set_law(pls_world *world, pls_material_id a, pls_material_id b, const pls_law_ops *ops, const double *values);
+/// Levers of a contact's velocities. False (default): both bodies' velocities are taken at the one contact point c = (x1 + x2)/2, where the force acts, so that
+/// work and torque match and energy is booked exactly. True: each at its own surface point, x1 and x2 (P1 eq. 15b), and against a wall the torque too: what
+/// LAMMPS's granular styles do. The two differ by terms of the overlap over the radius.
+pls_status pls_world_set_lever_at_surface(pls_world *world, pls_material_id a, pls_material_id b, bool at_surface);
 /// Change one parameter of the law between two materials; springs stay.
 pls_status pls_world_set_law_parameter(pls_world *world, pls_material_id a, pls_material_id b, const char *name, double value);
 /// Change a value of a material ("density", "young_modulus", "poisson_ratio"); laws are prepared anew. Masses of bodies do not change.

@@ -13,6 +13,17 @@
 
 #include <string.h>
 
+/// Room for `needed` items whose old contents may go. Lists change little from one to the next, so a sixteenth to spare is enough.
+static pls_status renew(void *block, size_t *capacity, size_t needed, size_t size, const char *what)
+{
+    if (needed <= *capacity) return PLS_OK;
+    pls_release(block);
+    *capacity = 0;
+    PLS_TRY(pls_allocate(block, needed + needed / 16, size, what));
+    *capacity = needed + needed / 16;
+    return PLS_OK;
+}
+
 pls_status pls_contact_memory_reserve(pls_contact_memory *memory, size_t count)
 {
     return pls_reserve(&memory->entry, &memory->capacity, count, sizeof *memory->entry, "what contacts remember");
@@ -150,17 +161,15 @@ static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
         list->section[s].history = history;
         history += (list->section[s].count + 7) / 8 * 8 * (size_t)list->section[s].stride;
     }
-    size_t capacity = list->capacity, reach = count + PLS_PAIR_REACH;
-    PLS_TRY(pls_reserve(&list->row_i, &capacity, reach, sizeof *list->row_i, "the pair list"));
-    capacity = list->capacity;
-    PLS_TRY(pls_reserve(&list->row_j, &capacity, reach, sizeof *list->row_j, "the pair list"));
-    list->capacity = capacity;
-    if (periodic) PLS_TRY(pls_reserve(&list->shift, &list->shift_capacity, count, sizeof *list->shift, "the images of pairs"));
-    PLS_TRY(pls_reserve(&list->touch, &list->touch_capacity, count / 8 + 1, 1, "the touching pairs"));
-    PLS_TRY(pls_reserve(&list->ended, &list->ended_capacity, count / 8 + 1, 1, "the pairs that part"));
-    PLS_TRY(pls_reserve(&list->history, &list->history_capacity, history, sizeof *list->history, "the history of contacts"));
+    size_t reach = count + PLS_PAIR_REACH;
+    PLS_TRY(renew(&list->row_i, &list->row_i_capacity, reach, sizeof *list->row_i, "the pair list"));
+    PLS_TRY(renew(&list->row_j, &list->row_j_capacity, reach, sizeof *list->row_j, "the pair list"));
+    if (periodic) PLS_TRY(renew(&list->shift, &list->shift_capacity, count, sizeof *list->shift, "the images of pairs"));
+    PLS_TRY(renew(&list->touch, &list->touch_capacity, count / 8 + 1, 1, "the touching pairs"));
+    PLS_TRY(renew(&list->ended, &list->ended_capacity, count / 8 + 1, 1, "the pairs that part"));
+    PLS_TRY(renew(&list->history, &list->history_capacity, history, sizeof *list->history, "the history of contacts"));
     size_t slots = list->wall_first * PLS_SLOT + (count - list->wall_first) * PLS_WALL_SLOT;
-    PLS_TRY(pls_reserve(&list->slot, &list->slot_capacity, slots, sizeof *list->slot, "the forces of contacts"));
+    PLS_TRY(renew(&list->slot, &list->slot_capacity, slots, sizeof *list->slot, "the forces of contacts"));
     memset(list->touch, 0, count / 8 + 1);
     memset(list->ended, 0, count / 8 + 1);
     memset(list->row_i, 0, reach * sizeof *list->row_i);
@@ -282,7 +291,7 @@ static pls_status gather_rows(pls_gather_rows *rows, const pls_pair_list *list, 
             ++rows->start[list->row_j[c] + 2];
         }
     }
-    PLS_TRY(pls_reserve(&rows->entry, &rows->entry_capacity, entries, sizeof *rows->entry, "gather rows"));
+    PLS_TRY(renew(&rows->entry, &rows->entry_capacity, entries, sizeof *rows->entry, "gather rows"));
     for (size_t row = 2; row < bodies->count + 2; ++row) rows->start[row] += rows->start[row - 1];
     for (size_t s = 0; s < list->section_count; ++s)
     {
@@ -352,7 +361,7 @@ static pls_status keep_reference(pls_pair_list *list, const pls_bodies *bodies)
 /// Nothing is known of which entries touch: every row is stale.
 static pls_status forget_touching_entries(pls_pair_list *list, size_t rows)
 {
-    PLS_TRY(pls_reserve(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + 1, sizeof *list->near_entry, "touching entries"));
+    PLS_TRY(renew(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + 1, sizeof *list->near_entry, "touching entries"));
     size_t capacity = list->near_capacity;
     PLS_TRY(pls_reserve(&list->near_count, &capacity, rows, sizeof *list->near_count, "touching entries"));
     capacity = list->near_capacity;
@@ -408,7 +417,7 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
 
 size_t pls_pair_list_bytes(const pls_pair_list *list)
 {
-    return list->capacity * 2 * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift + list->touch_capacity + list->ended_capacity +
+    return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift + list->touch_capacity + list->ended_capacity +
            (list->history_capacity + list->slot_capacity) * sizeof(double) +
            (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_entry_capacity) * sizeof *list->pairs.entry;
 }

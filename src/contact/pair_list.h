@@ -59,8 +59,8 @@ typedef struct pls_pair_list
     size_t count;      ///< candidates, fill included
     size_t wall_first; ///< first wall candidate
     size_t listed;     ///< true candidates
-    size_t capacity;
     uint32_t *row_i, *row_j;
+    size_t row_i_capacity, row_j_capacity;
     int16_t (*shift)[4]; ///< periodic images: j's image lies at X_j + shift * edge; only in periodic worlds
     size_t shift_capacity;
     uint8_t *touch;      ///< bit k % 8 of byte k / 8: candidate k touched at the last step

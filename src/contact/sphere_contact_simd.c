@@ -8,7 +8,9 @@
 // Body rows are loaded whole and transposed in registers. Everything is lane by lane, so the width does not show in the bits.
 //
 // Contact point (P1 section 3.1): c = (x1 + x2)/2, so the lever arms are (r_i - delta/2) n and -(r_j - delta/2) n, and the relative velocity is
-// v_i - v_j + (l_i w_i + l_j w_j) x n at this one point.
+// v_i - v_j + (l_i w_i + l_j w_j) x n at this one point. On request (`lever_at_surface`) velocities are those of the surface points x1 and x2, levers r_i
+// and r_j, as in P1 eq. 15b and LAMMPS; torques between grains then still act at c, so that angular momentum is kept, but a pair turning as one rigid body
+// slips by |w| delta and work and torque do not match.
 //
 // The spring. s' = v_t is integrated by the trapezoid rule without remembering the last velocity: what is stored between steps is b = s + (dt/2) v_t, the
 // spring half a step ahead. A step forms s = b + (dt/2) v_t of its own velocity, lets the law shorten it, and stores s + (dt/2) v_t. The contact frame turns in
@@ -156,6 +158,7 @@ static inline __attribute__((always_inline)) void set_frame(pls_contact_work *wo
 static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
                                                              pls_contact_work *work, int periodic, int effective)
 {
+    const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0; // is the overlap's half taken off the levers of velocities?
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
     const pls_v4 edge_rate = {in->domain->edge_rate[0], in->domain->edge_rate[1], in->domain->edge_rate[2], 0.0};
     const pls_vd one = pls_vd_set(1.0);
@@ -187,7 +190,7 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
         f.delta = d[3] - distance;
         pls_vd half = 0.5 * f.delta;
         pls_vd u[3];
-        for (int a = 0; a < 3; ++a) u[a] = w[a] - half * w[4 + a]; // l_i w_i + l_j w_j
+        for (int a = 0; a < 3; ++a) u[a] = w[a] - (inward * half) * w[4 + a]; // l_i w_i + l_j w_j
         f.v[0] = d[4] + (u[1] * f.n[2] - u[2] * f.n[1]);
         f.v[1] = d[5] + (u[2] * f.n[0] - u[0] * f.n[2]);
         f.v[2] = d[6] + (u[0] * f.n[1] - u[1] * f.n[0]);
@@ -297,6 +300,7 @@ static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const
 
 static void load_walls(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, const wall_frame *wall)
 {
+    const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0;
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
         pls_v8 place[PLS_W];
@@ -321,7 +325,7 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
         frame f;
         for (int a = 0; a < 3; ++a) f.n[a] = pls_vd_set(-wall->normal[a]), f.spring[a] = s[a];
         f.delta = d[3] - height;
-        pls_vd lever = d[3] - 0.5 * f.delta;
+        pls_vd lever = d[3] - (0.5 * inward) * f.delta;
         for (int a = 0; a < 3; ++a)
         {
             arm[a] = x[a] + lever * f.n[a]; // contact point from the wall's position

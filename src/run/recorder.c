@@ -192,6 +192,13 @@ static pls_status look(pls_recorder *recorder, pls_recorder_output *output, pls_
     return PLS_OK;
 }
 
+bool pls_recorder_due(const pls_recorder *recorder, uint64_t step, double time, double dt)
+{
+    for (size_t k = 0; k < recorder->count; ++k)
+        if (pls_schedule_due(&recorder->output[k].def->schedule, step, time, dt)) return true;
+    return false;
+}
+
 pls_status pls_recorder_look(pls_recorder *recorder, pls_world *world)
 {
     uint64_t step = pls_world_step_number(world);

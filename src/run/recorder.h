@@ -32,6 +32,8 @@ pls_status pls_recorder_init(pls_recorder *recorder, const char *directory, pls_
 pls_status pls_recorder_start(pls_recorder *recorder);
 /// Cut all files back to what `run` (the text of a checkpoint) says and go on with them. CORRUPT when they are no longer what they were.
 pls_status pls_recorder_resume(pls_recorder *recorder, const char *run);
+/// True when an observer looks at this step.
+bool pls_recorder_due(const pls_recorder *recorder, uint64_t step, double time, double dt);
 /// Write what is due at this step.
 pls_status pls_recorder_look(pls_recorder *recorder, pls_world *world);
 /// Put all rows on the disk and add the lengths of series and the times of frames to `run`.

@@ -105,6 +105,8 @@ static pls_status set_law(pls_builder *b, const pls_scene_contact *contact, size
         place += row->components == 3 ? 3 : 1;
     }
     pls_status status = pls_world_set_law(b->world, b->materials[i], b->materials[j], contact->ops, values);
+    bool at_surface = strcmp(pls_node_get(contact->node, "lever")->text, "surface") == 0;
+    if (status == PLS_OK) status = pls_world_set_lever_at_surface(b->world, b->materials[i], b->materials[j], at_surface);
     return pls_node_context(status, contact->node, "contact");
 }
 

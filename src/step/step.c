@@ -19,26 +19,8 @@ enum
 {
     GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
     STABLE_STEPS = 4096, ///< steps between looks at the stable step
-    BODY_BLOCK = 1024    ///< bodies per block; equal to PLS_FORCE_BATCH
+    BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
-
-static pls_status begin_bodies(pls_world *world)
-{
-    pls_bodies *bodies = &world->bodies;
-    size_t blocks = pls_block_count(bodies->count, BODY_BLOCK);
-    double largest = 0.0, poison = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : largest) reduction(+ : poison) // a sum of zeros, or NaN: no order to keep
-    for (size_t b = 0; b < blocks; ++b)
-    {
-        pls_drift_report report;
-        PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &report);
-        if (report.largest_square > largest) largest = report.largest_square;
-        poison += report.poison;
-    }
-    if (poison != 0.0 || isnan(poison)) return pls_guard_finite(world);
-    pls_neighbours_moved(world, largest);
-    return PLS_OK;
-}
 
 static void find_contacts_and_forces(pls_world *world, double dt_before)
 {
@@ -66,29 +48,77 @@ static pls_status finish_block(pls_world *world, size_t first, size_t last, doub
     return PLS_OK;
 }
 
-/// Gather forces and finish velocities; `time` is the instant of the forces.
-static pls_status finish_bodies(pls_world *world, double dt, double time)
+static void begin_block(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *total)
+{
+    pls_drift_report report;
+    PLS_SIMD_SELECT(pls_verlet_begin)(bodies, first, last, dt, &report);
+    if (report.largest_square > total->largest_square) total->largest_square = report.largest_square;
+    total->poison += report.poison; // zeros, or NaN: no order to keep
+}
+
+static pls_status judge_drift(pls_world *world, const pls_drift_report *total)
+{
+    if (total->poison != 0.0 || isnan(total->poison)) PLS_TRY(pls_guard_finite(world));
+    pls_neighbours_moved(world, total->largest_square);
+    return PLS_OK;
+}
+
+static void join_report(pls_drift_report *total, const pls_drift_report *part)
+{
+#pragma omp critical(pls_drift_report)
+    {
+        if (part->largest_square > total->largest_square) total->largest_square = part->largest_square;
+        total->poison += part->poison;
+    }
+}
+
+static pls_status begin_bodies(pls_world *world)
 {
     pls_bodies *bodies = &world->bodies;
-    size_t blocks = pls_block_count(bodies->count, BODY_BLOCK);
+    pls_drift_report total = {0.0, 0.0};
+#pragma omp parallel
+    {
+        pls_drift_report part = {0.0, 0.0};
+#pragma omp for schedule(static)
+        for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
+            begin_block(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
+        join_report(&total, &part);
+    }
+    return judge_drift(world, &total);
+}
+
+/// Gather forces and finish velocities; `time` is the instant of the forces. With `go_on` each block of bodies begins its next step at once, while its rows
+/// are in the cache.
+static pls_status finish_bodies(pls_world *world, double dt, double time, bool go_on)
+{
+    pls_bodies *bodies = &world->bodies, next = *bodies;
+    next.load = bodies->load_before; // where the new loads go
+    next.load_before = bodies->load;
+    pls_drift_report total = {0.0, 0.0};
     pls_status worst = PLS_OK;
     char message[512] = "";
-#pragma omp parallel for schedule(static)
-    for (size_t b = 0; b < blocks; ++b)
+#pragma omp parallel
     {
-        pls_status status = finish_block(world, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), dt, time);
-        if (status == PLS_OK) continue;
-#pragma omp critical(pls_finish_failure)
+        pls_drift_report part = {0.0, 0.0};
+#pragma omp for schedule(static)
+        for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
         {
-            worst = status;
-            strncpy(message, pls_last_message(), sizeof message - 1); // messages belong to threads; bring it to ours
+            size_t first = b * BODY_BLOCK, last = pls_block_end(b, BODY_BLOCK, bodies->count);
+            pls_status status = finish_block(world, first, last, dt, time);
+            if (status == PLS_OK && go_on) begin_block(&next, first, last, dt, &part);
+            if (status == PLS_OK) continue;
+#pragma omp critical(pls_finish_failure)
+            {
+                worst = status;
+                strncpy(message, pls_last_message(), sizeof message - 1); // messages belong to threads; bring it to ours
+            }
         }
+        join_report(&total, &part);
     }
     if (worst != PLS_OK) return pls_fail(worst, "%s", message);
-    pls_body_load *swap = bodies->load;
-    bodies->load = bodies->load_before;
-    bodies->load_before = swap;
-    return PLS_OK;
+    bodies->load = next.load;
+    bodies->load_before = next.load_before;
+    return go_on ? judge_drift(world, &total) : PLS_OK;
 }
 
 static pls_status check_step(pls_world *world)
@@ -98,12 +128,9 @@ static pls_status check_step(pls_world *world)
     return PLS_OK;
 }
 
-pls_status pls_step(pls_world *world)
+/// From the drift to the end of the step; `go_on` runs the next step's half kick and drift along.
+static pls_status complete_step(pls_world *world, bool go_on)
 {
-    PLS_TRY(pls_world_prepare(world));
-    PLS_TRY(pls_special_before(world));
-    pls_states_before(world);
-    PLS_TRY(begin_bodies(world));
     PLS_TRY(pls_special_drift(world));
     PLS_TRY(pls_states_advance(world));
     PLS_TRY(pls_states_apply(world));
@@ -112,16 +139,44 @@ pls_status pls_step(pls_world *world)
     PLS_TRY(pls_neighbours_refresh(world));
     find_contacts_and_forces(world, 0.5 * world->dt);
     PLS_TRY(pls_book_parted(world));
-    PLS_TRY(finish_bodies(world, world->dt, time));
-    pls_special_finish(world);
+    PLS_TRY(finish_bodies(world, world->dt, time, go_on));
+    if (!go_on) pls_special_finish(world);
     ++world->step;
     world->time = time;
-    return check_step(world);
+    return go_on ? PLS_OK : check_step(world);
+}
+
+/// Half kick and drift.
+static pls_status begin_step(pls_world *world)
+{
+    PLS_TRY(pls_special_before(world));
+    pls_states_before(world);
+    return begin_bodies(world);
+}
+
+pls_status pls_step(pls_world *world)
+{
+    PLS_TRY(pls_world_prepare(world));
+    PLS_TRY(begin_step(world));
+    return complete_step(world, false);
+}
+
+/// Steps may run into each other where nobody looks in between: no guard is due, and no body or state needs to be asked at the end of the step.
+static bool may_go_on(const pls_world *world)
+{
+    return (world->step + 1) % GUARD_STEPS != 0 && world->special_count == 0 && world->state_count == 0 && world->binding_count == 0;
 }
 
 pls_status pls_world_run(pls_world *world, uint64_t steps)
 {
-    for (uint64_t k = 0; k < steps; ++k) PLS_TRY(pls_step(world));
+    PLS_TRY(pls_world_prepare(world));
+    bool begun = false;
+    for (uint64_t k = 0; k < steps; ++k)
+    {
+        if (!begun) PLS_TRY(begin_step(world));
+        begun = k + 1 < steps && may_go_on(world);
+        PLS_TRY(complete_step(world, begun));
+    }
     return PLS_OK;
 }
 
@@ -177,7 +232,7 @@ pls_status pls_world_prepare(pls_world *world)
     PLS_TRY(pls_choose_step(world));
     find_contacts_and_forces(world, 0.0);
     PLS_TRY(pls_guard_overlap(world));
-    PLS_TRY(finish_bodies(world, 0.0, world->time));
+    PLS_TRY(finish_bodies(world, 0.0, world->time, false));
     memcpy(world->bodies.load_before, world->bodies.load, world->bodies.count * sizeof *world->bodies.load); // before the start, as at the start
     world->prepared = true;
     return pls_guard_finite(world);

@@ -222,6 +222,14 @@ static pls_status find_law(const pls_world *world, pls_material_id a, pls_materi
     return PLS_OK;
 }
 
+pls_status pls_world_set_lever_at_surface(pls_world *world, pls_material_id a, pls_material_id b, bool at_surface)
+{
+    uint16_t index;
+    PLS_TRY(find_law(world, a, b, &index));
+    world->laws.law[index].lever_at_surface = at_surface;
+    return PLS_OK;
+}
+
 pls_status pls_world_set_law_parameter(pls_world *world, pls_material_id a, pls_material_id b, const char *name, double value)
 {
     uint16_t index;

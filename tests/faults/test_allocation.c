@@ -136,7 +136,7 @@ static pls_status work(pls_world *world)
 {
     PLS_TRY(build(world));
     PLS_TRY(pls_world_prepare(world));
-    PLS_TRY(pls_world_run(world, 200));
+    PLS_TRY(pls_world_run(world, 80));
     return look(world);
 }
 

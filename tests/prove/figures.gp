@@ -10,7 +10,7 @@ set style line 9 lc rgb '#555555' lw 1.2
 set output out.'/verify-oblique.svg'
 set xlabel 'angle of impact [degrees]'
 set ylabel 'tangential velocity after / before'
-set key bottom right
+set key top center
 tangent(a) = tan(a*pi/180)
 plot data.'/oblique-wall.tsv' using 1:($3/tangent($1)) with lines ls 9 title 'stick-slip solution', \
      data.'/oblique-pair.tsv' using 1:($3/tangent($1)) with lines ls 9 notitle, \

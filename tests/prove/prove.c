@@ -5,6 +5,8 @@
 // Exit status 1 when a row is out of tolerance.
 #include "verify/cases.h"
 
+#include <particls/threads.h>
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,7 +69,7 @@ int main(int argc, char **argv)
     }
     verify_sheet *sheet = malloc(sizeof *sheet);
     int rows = 0, failed = 0;
-    if (!sheet) return 1;
+    if (!sheet || pls_set_threads(1) != PLS_OK) return 1; // most worlds hold two bodies
     for (const verify_entry *entry = verify_cases; entry->name; ++entry)
     {
         if (!wanted(entry->name, argc - 2, argv + 2)) continue;

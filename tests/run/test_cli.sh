@@ -152,6 +152,8 @@ expect 2 "is no run directory" info "$0"
 # schema and plugin
 expect 0 '"$schema"' schema
 expect 0 "hex_pack" schema --reference
+expect 0 "`angular_velocity`" schema --fields
+expect 2 "exclude each other" schema --fields --reference
 expect 0 "-ffp-contract=off" plugin --cflags
 
 # A program that cannot write what it prints must not say that all is well.

@@ -8,10 +8,10 @@ static const double pi = 3.14159265358979323846;
 
 heap_setup heap_default(int dimension, int count)
 {
-    return (heap_setup){.dimension = dimension, .count = count, .size_ratio = 4.0, .states = true, .reorder = true};
+    return (heap_setup){.dimension = dimension, .count = count, .size_ratio = 2.5, .states = true, .reorder = true};
 }
 
-// Spheres start on a jittered lattice with the spacing of the largest, so that they do not overlap; the largest radius is 0.45.
+// Spheres start on a jittered lattice with the spacing of the largest, so that they do not overlap; the largest radius is 0.48.
 static int lattice_side(const heap_setup *setup) { return (int)ceil(setup->dimension == 2 ? sqrt(setup->count) : cbrt(setup->count)); }
 
 static pls_status growth_rate(void *context, const pls_state_point *at, const double *values, double *rate)
@@ -37,7 +37,7 @@ static pls_status stiffness(void *context, double time, const double *states, do
     return PLS_OK;
 }
 
-static double radius_of(const heap_setup *setup, pls_random *random) { return 0.45 * pow(setup->size_ratio, -pls_random_uniform(random)); }
+static double radius_of(const heap_setup *setup, pls_random *random) { return 0.48 * pow(setup->size_ratio, -pls_random_uniform(random)); }
 
 static pls_body_id add_sphere(const heap_setup *setup, const verify_scene *scene, uint64_t number, pls_vec3 position)
 {

@@ -99,22 +99,33 @@ void case_elastic_energy(verify_sheet *sheet)
     sheet_absolute(sheet, fitted_order(levels, steps, mean), 2.0, 0.1, "order in dt of the mean energy change");
 }
 
+/// Mean and worst restitution of all phases at about `steps` steps per contact. The dashpot's force begins and ends with a jump: a single impact is off by up
+/// to 2 z w dt, at random; the mean of all phases is not.
+static void restitution(double zeta, int steps, int ends, double exact, double *mean, double *worst)
+{
+    double kn = 1e4, m_eff = 0.5, duration = pi / (sqrt(kn / m_eff) * sqrt(1.0 - zeta * zeta));
+    *mean = 0.0;
+    *worst = exact;
+    for (int j = 0; j < PHASES * ends; ++j) // every phase of the start with `ends` phases of the end
+    {
+        double dt = duration / (steps + (j / PHASES + 0.5) / ends);
+        head_on_setup p = {3, 1.0, 1.0, kn, 2.0 * zeta * sqrt(kn * m_eff), dt, phase_of(j % PHASES)};
+        double e = collide_head_on(&p).restitution;
+        *mean += e / (PHASES * ends);
+        if (fabs(e - exact) > fabs(*worst - exact)) *worst = e;
+    }
+}
+
 void case_restitution(verify_sheet *sheet)
 {
     const double ratios[] = {0.05, 0.1, 0.3};
     for (int k = 0; k < 3; ++k)
     {
-        double zeta = ratios[k], kn = 1e4, m_eff = 0.5, omega = sqrt(kn / m_eff), damped = sqrt(1.0 - zeta * zeta);
-        double exact = exp(-pi * zeta / damped), sum = 0.0, worst = exact;
-        for (int j = 0; j < PHASES; ++j)
-        {
-            head_on_setup p = {3, 1.0, 1.0, kn, 2.0 * zeta * sqrt(kn * m_eff), step_of(pi / (omega * damped), 1000, j), phase_of(j)};
-            double e = collide_head_on(&p).restitution;
-            sum += e;
-            if (fabs(e - exact) > fabs(worst - exact)) worst = e;
-        }
-        sheet_relative(sheet, sum / PHASES, exact, 2e-5, "z = %g, dt = tc/1000, mean of %d phases", zeta, PHASES);
-        sheet_relative(sheet, worst, exact, 1e-3, "z = %g, dt = tc/1000, worst of %d phases", zeta, PHASES);
+        double zeta = ratios[k], exact = exp(-pi * zeta / sqrt(1.0 - zeta * zeta)), mean, worst;
+        int steps = sheet->thorough ? 2000 : 1000;
+        restitution(zeta, steps, sheet->thorough ? PHASES : 2, exact, &mean, &worst);
+        sheet_relative(sheet, mean, exact, 1e-4, "z = %g, dt = tc/%d, mean of all phases", zeta, steps);
+        if (sheet->thorough) sheet_relative(sheet, worst, exact, 1e-3, "z = %g, dt = tc/%d, worst phase", zeta, steps);
     }
 }
 

@@ -52,7 +52,9 @@ void case_book_oblique(verify_sheet *sheet)
             dt[level] = duration / (250 << level);
             mean[level] = 0.0;
             for (int j = 0; j < phases; ++j)
-                mean[level] += impact_error(dt[level] * (1.0 + 0.01 * j / phases), (j + 0.5) / phases, impacts[k].slope, impacts[k].lateral, impacts[k].spin) / phases;
+                mean[level] += impact_error(dt[level] * (1.0 + 0.01 * j / phases), (j + 0.5) / phases, impacts[k].slope, impacts[k].lateral,
+                                            impacts[k].spin) /
+                               phases;
             if (k == 0) sheet_point(sheet, "mean error of the energy book, sliding impact", dt[level] / duration, mean[level], NAN);
             if (level == 2) sheet_below(sheet, mean[level], 5e-6, "%s: mean relative error, dt = tc/1000", impacts[k].name);
         }
@@ -176,20 +178,20 @@ void case_rolling(verify_sheet *sheet)
 
 void case_sliding_to_rolling(verify_sheet *sheet)
 {
-    double g = 10.0, lever, v0 = 2.0, mu = 0.4, dt = 1e-4, rolls = NAN, before = v0;
+    double g = 10.0, lever, v0 = 2.0, mu = 0.4, dt = 1e-5, rolls = NAN, before = v0;
     pls_world_def def = pls_default_world_def(3);
     def.dt = dt;
     verify_scene scene = verify_open(&def, "viscoelastic", rolling_law);
     pls_body_id id = rest_on_plane(&scene, g, pls_vec(0, 0, 1), pls_vec(v0, 0, 0), &lever);
     MUST(pls_world_add_gravity(scene.world, pls_vec(0, 0, -g)));
-    for (int k = 1; k <= 10000; ++k)
+    for (int k = 1; k <= 100000; ++k)
     {
         MUST(pls_step(scene.world));
         pls_body_motion m = verify_motion(scene.world, id);
         double slip = m.velocity.x - lever * m.angular_velocity.y;
         if (isnan(rolls) && slip <= 0.0) rolls = dt * (k - slip / (slip - before));
         before = slip;
-        if (k % 20 == 0) sheet_point(sheet, "speed [m/s]", dt * k, m.velocity.x, fmax(v0 - mu * g * dt * k, 5.0 / 7.0 * v0));
+        if (k % 200 == 0) sheet_point(sheet, "speed [m/s]", dt * k, m.velocity.x, fmax(v0 - mu * g * dt * k, 5.0 / 7.0 * v0));
     }
     pls_world_figures f = verify_figures(scene.world);
     pls_body_motion m = verify_motion(scene.world, id);

@@ -199,7 +199,7 @@ static order_result run_disc(double dt, int steps)
     return r;
 }
 
-void case_order_disc(verify_sheet *sheet) { compare_steps(sheet, run_disc, 1.0, 400, true); }
+void case_order_disc(verify_sheet *sheet) { compare_steps(sheet, run_disc, 1.0, 800, true); }
 
 // ---- the energy book ----
 

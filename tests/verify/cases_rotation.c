@@ -190,7 +190,7 @@ void case_free_rotation_drift(verify_sheet *sheet)
     verify_close(&scene);
     // Round-off: half a unit in the last place per step, as if all rounding went one way.
     double round_off = turns * 200 * 0x1p-53;
-    sheet_below(sheet, length_error, round_off, "relative change of |L| in %d turns, round-off", turns);
+    sheet_below(sheet, length_error, round_off, "relative change of the length of L in %d turns, round-off", turns);
     sheet_below(sheet, direction_error, round_off, "change of L, length and direction, in %d turns, round-off", turns);
     sheet_below(sheet, (last - first) / energy, 1e-6, "relative change of the mean energy, first to last %d of %d turns", ends, turns);
 }

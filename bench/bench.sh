@@ -1,0 +1,163 @@
+#!/usr/bin/env bash
+# The benchmarks: measures the programs of this folder, LAMMPS beside them in turn, and writes docs/performance.md with its figures.
+#
+#     bench/bench.sh [build folder]      without a folder: build/release, built first
+#
+# Environment: QUICK=1 runs everything in small to see that it works and leaves the page in bench/results/quick instead; ROUNDS=3 rounds of each comparison;
+# LAMMPS_SKIN=0.015 its neighbour skin [m] (0.015 was its fastest).
+#
+# Every measurement is a line of JSON in bench/results/*.jsonl. Speeds of a machine drift, so what is compared runs in turn (A B A B A B) and is compared round
+# by round. Exit status 1 when something failed; the page names it and is written all the same.
+set -euo pipefail
+
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(dirname "$here")
+quick=${QUICK:-0}
+[ "$quick" = 0 ] || quick=1
+skin=${LAMMPS_SKIN:-0.015}
+
+if [ "$quick" = 1 ]; then
+    rounds=${ROUNDS:-1}
+    results=$here/results/quick page=$results/performance.md figures=$results/figures
+    end=0.05 large_steps=10 threads_steps=500 scaling_work=4000000 sizes=(1000 10000 100000 1000000)
+else
+    rounds=${ROUNDS:-3}
+    results=$here/results page=$root/docs/performance.md figures=$root/docs/figures
+    end=0.5 large_steps=200 threads_steps=4000 scaling_work=36000000 sizes=(1000 3000 10000 30000 100000 300000 1000000)
+fi
+
+build=${1:-$root/build/release}
+[ $# -gt 0 ] || make -C "$root" --no-print-directory build
+compression=$build/bench/compression
+broad_phase=$build/bench/broad_phase
+for program in "$compression" "$broad_phase"; do
+    [ -x "$program" ] || { echo "bench.sh: $program is missing: run make build first" >&2; exit 2; }
+done
+for tool in gnuplot python3; do
+    command -v $tool >/dev/null || { echo "bench.sh: $tool is missing: run scripts/install-packages" >&2; exit 2; }
+done
+
+peer=1
+if ! command -v lmp >/dev/null; then
+    if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
+        echo "Installing lammps, to compare with"
+        apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends lammps >/dev/null || true
+    fi
+    command -v lmp >/dev/null || { peer=0; echo "bench.sh: LAMMPS is missing (apt-get install lammps): going on without it" >&2; }
+fi
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir -p "$results" "$figures"
+rm -f "$results"/*.jsonl "$results/failures.txt"
+: >"$results/failures.txt"
+start=$SECONDS
+
+failed() # <what>: tell and remember; the measurements go on
+{
+    echo "FAILED: $1" | tee -a "$results/failures.txt" >&2
+    sed 's/^/    /' "$scratch/errors" >&2 || true
+}
+
+record() # <case> <round> <program>: a line of JSON from standard input goes to the case's file
+{
+    local line
+    IFS= read -r line
+    printf '{"case": "%s", "round": %s, "program": "%s", %s\n' "$1" "$2" "$3" "${line#\{}" >>"$results/$1.jsonl"
+    printf '[%4d s] %s, round %s, %s: %s\n' $((SECONDS - start)) "$1" "$2" "$3" "$(grep -o '"bodies": [0-9]*\|"[a-z_]*_per_[a-z]*": [0-9.]*\|"wall_s": [0-9.]*' <<<"$line" | tr -d '"' | paste -sd ' ')"
+}
+
+ours() # <case> <round> <variant> <program> [option...]
+{
+    local case=$1 round=$2 variant=$3
+    shift 3
+    if "$@" >"$scratch/out" 2>"$scratch/errors"; then record "$case" "$round" "$variant" <"$scratch/out"; else failed "$case, round $round, $variant: ${*##*/}"; fi
+}
+
+lammps() # <case> <round> <steps> <option of compression...>
+{
+    local case=$1 round=$2 steps=$3 variables bodies seconds energy
+    shift 3
+    [ $peer = 1 ] || return 0
+    if [ "$(cat "$scratch/packing.key" 2>/dev/null)" != "$*" ]; then
+        if ! "$compression" "$@" --lammps-data "$scratch/packing.data" >"$scratch/variables" 2>"$scratch/errors"; then
+            failed "$case: writing the packing for LAMMPS"
+            return 0
+        fi
+        echo "$*" >"$scratch/packing.key"
+    fi
+    read -ra variables <"$scratch/variables"
+    if ! (cd "$scratch" && OMP_NUM_THREADS=1 lmp -in "$here/peers/compression.lammps.in" -log none -var data packing.data -var skin "$skin" -var steps "$steps" \
+        "${variables[@]}" >lammps.out 2>errors); then
+        tail -5 "$scratch/lammps.out" >>"$scratch/errors"
+        failed "$case, round $round, LAMMPS"
+        return 0
+    fi
+    read -r seconds bodies < <(sed -n 's/^Loop time of \([0-9.e+]*\) on 1 procs for [0-9]* steps with \([0-9]*\) atoms.*/\1 \2/p' "$scratch/lammps.out") || true
+    energy=$(sed -n 's/^kinetic energy //p' "$scratch/lammps.out")
+    if [ -z "${seconds:-}" ] || [ -z "$energy" ]; then
+        tail -5 "$scratch/lammps.out" >"$scratch/errors"
+        failed "$case, round $round, LAMMPS: no loop time in its output"
+        return 0
+    fi
+    awk -v n="$bodies" -v steps="$steps" -v s="$seconds" -v e="$energy" 'BEGIN {
+        printf "{\"bodies\": %d, \"steps\": %d, \"threads\": 1, \"wall_s\": %s, \"particle_steps_per_s\": %.0f, \"kinetic_energy\": %s}\n", n, steps, s, n * steps / s, e }' |
+        record "$case" "$round" lammps
+}
+
+isas=()
+case $(uname -m) in x86_64) if grep -qw avx2 /proc/cpuinfo; then isas=(v3); fi ;; esac
+if grep -qw avx512f /proc/cpuinfo && grep -qw avx512vl /proc/cpuinfo; then isas=(v4 "${isas[@]}"); fi
+[ ${#isas[@]} -gt 0 ] || isas=(best)
+
+compare() # <case> <steps> <option of compression...>: each instruction set and LAMMPS in turn, one thread
+{
+    local case=$1 steps=$2 round isa
+    shift 2
+    for ((round = 1; round <= rounds; ++round)); do
+        for isa in "${isas[@]}"; do ours "$case" "$round" "particls-$isa" env PARTICLS_ISA="$isa" "$compression" "$@" --steps "$steps"; done
+        lammps "$case" "$round" "$steps" "$@"
+    done
+}
+
+compare example "$(awk -v end=$end 'BEGIN { printf "%.0f", end / 2.5e-5 }')" --bodies 16500
+compare million "$large_steps" --bodies 1000000 --pressed 0.02
+
+for ((round = 1; round <= rounds; ++round)); do
+    for threads in 1 2; do
+        ours threads "$round" "particls-$threads" "$compression" --bodies 16500 --pressed 0.02 --steps $threads_steps --threads $threads
+        ours threads-million "$round" "particls-$threads" "$compression" --bodies 1000000 --pressed 0.02 --steps $((large_steps / 2)) --threads $threads
+    done
+done
+
+for ((round = 1; round <= rounds; ++round)); do
+    for size in "${sizes[@]}"; do
+        # About the same work for each, but no more than 2,000 steps: 1.75 % of strain, so that all are pressed alike.
+        steps=$((scaling_work / size))
+        ((steps <= 2000)) || steps=2000
+        ours scaling "$round" particls "$compression" --bodies "$size" --pressed 0.02 --steps "$steps"
+        for ratio in 1 100; do ours broad-phase "$round" "ratio-$ratio" "$broad_phase" "$size" $ratio; done
+    done
+done
+
+version=$(sed -n 's/^#define PLS_VERSION_TEXT "\(.*\)"/\1/p' "$root/include/particls/types.h")
+compiler=$(sed -n 's/^CMAKE_C_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
+cat >"$results/machine.tsv" <<TEXT
+date	$(date -u +%Y-%m-%d)
+took	$((SECONDS - start)) s
+processor	$(LC_ALL=C lscpu | sed -n 's/^Model name: *//p' | head -1), $(nproc) processors online, instruction sets measured: ${isas[*]}
+caches	$(LC_ALL=C lscpu | sed -n 's/^\(L[1-3][di]*\) cache: */\1 /p' | paste -sd ',' | sed 's/,/, /g')
+memory	$(awk '/^MemTotal/ { printf "%.1f GiB", $2 / 1048576 }' /proc/meminfo)
+kernel	$(uname -sr)
+particls	$version$(git -C "$root" log -1 --format=', commit %h' 2>/dev/null || true)
+compiler	$("${compiler:-cc}" --version | head -1)
+LAMMPS	$(if [ $peer = 1 ]; then (lmp -h 2>/dev/null || true) | sed -n 's/^Large-scale.* - //p' | head -1; else echo "missing (apt-get install lammps)"; fi), neighbour skin $skin m
+TEXT
+
+status=0
+python3 "$here/page.py" "$results" "$here/performance_notes.md" >"$scratch/page.md" 2>"$scratch/errors" || { status=1; failed "page.py"; }
+gnuplot -e "data='$results'; out='$figures'" "$here/figures.gp" 2>"$scratch/errors" || { status=1; failed "figures.gp"; }
+cp "$scratch/page.md" "$page"
+[ ! -s "$results/failures.txt" ] || status=1
+echo "$page"
+exit $status
