@@ -19,11 +19,11 @@ skin=${LAMMPS_SKIN:-0.015}
 if [ "$quick" = 1 ]; then
     rounds=${ROUNDS:-1}
     results=$here/results/quick page=$results/performance.md figures=$results/figures
-    end=0.05 large_steps=10 threads_steps=500 scaling_work=4000000 sizes=(1000 10000 100000 1000000)
+    end=0.05 large=200000 large_steps=20 threads_steps=500 scaling_work=8000000 sizes=(1000 10000 100000 1000000)
 else
     rounds=${ROUNDS:-3}
     results=$here/results page=$root/docs/performance.md figures=$root/docs/figures
-    end=0.5 large_steps=200 threads_steps=4000 scaling_work=36000000 sizes=(1000 3000 10000 30000 100000 300000 1000000)
+    end=0.5 large=1000000 large_steps=200 threads_steps=4000 scaling_work=36000000 sizes=(1000 3000 10000 30000 100000 300000 1000000)
 fi
 
 build=${1:-$root/build/release}
@@ -41,7 +41,9 @@ peer=1
 if ! command -v lmp >/dev/null; then
     if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
         echo "Installing lammps, to compare with"
-        apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends lammps >/dev/null || true
+        if ! { apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends lammps >/dev/null; }; then
+            echo "bench.sh: installing lammps failed" >&2
+        fi
     fi
     command -v lmp >/dev/null || { peer=0; echo "bench.sh: LAMMPS is missing (apt-get install lammps): going on without it" >&2; }
 fi
@@ -121,12 +123,12 @@ compare() # <case> <steps> <option of compression...>: each instruction set and 
 }
 
 compare example "$(awk -v end=$end 'BEGIN { printf "%.0f", end / 2.5e-5 }')" --bodies 16500
-compare million "$large_steps" --bodies 1000000 --pressed 0.02
+compare large "$large_steps" --bodies $large --pressed 0.02
 
 for ((round = 1; round <= rounds; ++round)); do
     for threads in 1 2; do
         ours threads "$round" "particls-$threads" "$compression" --bodies 16500 --pressed 0.02 --steps $threads_steps --threads $threads
-        ours threads-million "$round" "particls-$threads" "$compression" --bodies 1000000 --pressed 0.02 --steps $((large_steps / 2)) --threads $threads
+        ours threads-large "$round" "particls-$threads" "$compression" --bodies $large --pressed 0.02 --steps $((large_steps / 2)) --threads $threads
     done
 done
 
@@ -150,8 +152,8 @@ caches	$(LC_ALL=C lscpu | sed -n 's/^\(L[1-3][di]*\) cache: */\1 /p' | paste -sd
 memory	$(awk '/^MemTotal/ { printf "%.1f GiB", $2 / 1048576 }' /proc/meminfo)
 kernel	$(uname -sr)
 particls	$version$(git -C "$root" log -1 --format=', commit %h' 2>/dev/null || true)
-compiler	$("${compiler:-cc}" --version | head -1)
-LAMMPS	$(if [ $peer = 1 ]; then (lmp -h 2>/dev/null || true) | sed -n 's/^Large-scale.* - //p' | head -1; else echo "missing (apt-get install lammps)"; fi), neighbour skin $skin m
+compiler	$("$(readlink -f "${compiler:-$(command -v cc)}")" --version | head -1)
+LAMMPS	$(if [ $peer = 1 ]; then (lmp -h 2>/dev/null || true) | sed -n 's/^Large-scale.*Simulator - //p' | head -1; else echo "missing (apt-get install lammps)"; fi), neighbour skin $skin m
 TEXT
 
 status=0

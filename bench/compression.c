@@ -247,8 +247,8 @@ static pls_status measure(const options *o, const packing *p, pls_world **world)
     double spheres = (double)sphere_count(p);
     printf("{\"bodies\": %zu, \"counts\": [%zu, %zu, %zu], \"pressed\": %g, \"steps\": %.0f, \"threads\": %d, \"isa\": \"%s\", ",
            sphere_count(p), p->count[0], p->count[1], p->count[2], o->pressed, o->steps, pls_threads(), pls_isa_name());
-    printf("\"wall_s\": %.6f, \"particle_steps_per_s\": %.0f, \"touching\": %zu, \"listed\": %zu, ", wall, spheres * o->steps / wall,
-           f.touching, f.listed);
+    printf("\"setup_s\": %.6f, \"wall_s\": %.6f, \"particle_steps_per_s\": %.0f, ", start - begin, wall, spheres * o->steps / wall);
+    printf("\"touching\": %zu, \"listed\": %zu, ", f.touching, f.listed);
     printf("\"bytes_per_body\": %.1f, \"bytes_per_contact\": ", (double)f.body_bytes / (double)f.bodies);
     if (f.touching > 0)
         printf("%.1f, ", (double)f.contact_bytes / (double)f.touching);

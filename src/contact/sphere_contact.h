@@ -13,7 +13,7 @@ typedef struct pls_contact_work
     _Alignas(64) double lever[PLS_CONTACT_BLOCK];     ///< sphere pairs: delta/2; walls: distance of the contact point from the centre of i [m]
     _Alignas(64) double normal_velocity[PLS_CONTACT_BLOCK];
     _Alignas(64) double slip_velocity[3][PLS_CONTACT_BLOCK];
-    _Alignas(64) double turn[2][PLS_CONTACT_BLOCK]; ///< cosine and sine of half the angle the contact frame turns about n in this step
+    _Alignas(64) double slip_step[3][PLS_CONTACT_BLOCK]; ///< tangential displacement in this step [m]
     _Alignas(64) double effective_radius[PLS_CONTACT_BLOCK];
     _Alignas(64) double effective_mass[PLS_CONTACT_BLOCK];
     _Alignas(64) double spring[3][PLS_CONTACT_BLOCK];
@@ -28,16 +28,16 @@ typedef struct pls_contact_work
     size_t active_count, fresh_count;
 } pls_contact_work;
 
-/// What the loops read besides the pair list. `dt_before` and `dt_after` are the halves of the step that a tangential spring counts with the velocity of now,
-/// before and after the law (see sphere_contact_simd.c).
+/// What the loops read besides the pair list. Velocities in `place` and `spin` are those of the middle of the step; `lead` adds what makes them those of its end.
 typedef struct pls_contact_input
 {
     const pls_body_place *place;
     const pls_body_spin *spin;
+    const pls_body_load *lead;
     const pls_body_orientation *orientation;
     const pls_domain *domain;
     const pls_law_table *laws;
-    double dt, dt_before, dt_after; ///< [s]
+    double dt; ///< [s]; 0 at the start of a run: no time has passed, springs and dissipation stay
 } pls_contact_input;
 
 PLS_SIMD_DECLARE(void, pls_contact_block, pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block, pls_contact_work *work);

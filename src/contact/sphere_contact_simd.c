@@ -12,10 +12,10 @@
 // and r_j, as in P1 eq. 15b and LAMMPS; torques between grains then still act at c, so that angular momentum is kept, but a pair turning as one rigid body
 // slips by |w| delta and work and torque do not match.
 //
-// The spring. s' = v_t is integrated by the trapezoid rule without remembering the last velocity: what is stored between steps is b = s + (dt/2) v_t, the
-// spring half a step ahead. A step forms s = b + (dt/2) v_t of its own velocity, lets the law shorten it, and stores s + (dt/2) v_t. The contact frame turns in
-// the same two halves: b is projected on the new tangent plane with its length kept, turned about n by half the angle of the pair's mean spin, and after the
-// law by the other half. A contact that begins within the step has had min(dt, delta/v_n) of it.
+// The spring. s' = v_t is integrated by the midpoint rule: s += dt u_t, with u the velocities of the middle of the step, which Verlet has exactly, and normal and
+// levers of the middle, half a step back. (The velocity that dashpots see would do for the order, but lags: it feeds energy to springs of undamped contacts, step
+// after step.) The old spring is carried along with the contact frame: projected on the new tangent plane with its length kept and turned about n by the
+// angle of the pair's mean spin; the new piece by half of it. A contact that begins within the step has had min(dt, delta/v_n) of it.
 
 #include "contact/sphere_contact.h"
 
@@ -115,19 +115,22 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
 
 typedef struct frame
 {
-    pls_vd n[3], delta, v[3], spin; ///< v: relative velocity at the contact point; spin: mean spin about n
-    pls_vd spring[3];               ///< as stored
+    pls_vd n[3], delta;
+    pls_vd v[3];       ///< relative velocity at the contact point at the end of the step
+    pls_vd u[3];       ///< tangential velocity in the middle of the step
+    pls_vd spin;       ///< mean spin about n, in the middle
+    pls_vd spring[3];  ///< as stored
 } frame;
 
-/// Normal and tangential velocity, and the spring in the frame of now.
+/// Normal and tangential velocity, and the spring in the frame of now, as it would be had it not slid.
 static inline __attribute__((always_inline)) void set_frame(pls_contact_work *work, size_t k, const frame *f, const pls_contact_input *in)
 {
     const pls_vd zero = pls_vd_set(0.0), one = pls_vd_set(1.0);
     pls_vd vn = f->v[0] * f->n[0] + f->v[1] * f->n[1] + f->v[2] * f->n[2];
-    pls_vd vt[3], t[3];
-    for (int a = 0; a < 3; ++a) vt[a] = f->v[a] - vn * f->n[a];
+    pls_vd un = f->u[0] * f->n[0] + f->u[1] * f->n[1] + f->u[2] * f->n[2]; // small: the frame has turned since
 
     // Projected on the tangent plane the spring loses sn of its length; |s|/|t| = sqrt(1 + e), e = sn^2/|t|^2, tiny: the plane turns little in a step.
+    pls_vd t[3];
     const pls_vd *s = f->spring;
     pls_vd sn = s[0] * f->n[0] + s[1] * f->n[1] + s[2] * f->n[2];
     for (int a = 0; a < 3; ++a) t[a] = s[a] - sn * f->n[a];
@@ -137,22 +140,33 @@ static inline __attribute__((always_inline)) void set_frame(pls_contact_work *wo
     e = pls_vd_pick((pls_vi)(e > one), one, e);
     pls_vd keep = one + e * (0.5 - 0.125 * e);
 
-    // Half the turn of the frame: sine and cosine of dt/2 times the spin, as series; a contact turns by far less than a radian in a step.
-    pls_vd a = (0.5 * in->dt) * f->spin, square = a * a;
-    pls_vd cosine = one - square * (0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0)));
-    pls_vd sine = a * (one - square * (1.0 / 6.0 - square * (1.0 / 120.0 - square * (1.0 / 5040.0))));
+    // The turn of the frame: sine and cosine as series; a contact turns by far less than a radian in a step.
+    pls_vd a = in->dt * f->spin, square = a * a;
+    pls_vd cosine = keep * (one - square * (0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0))));
+    pls_vd sine = keep * (a * (one - square * (1.0 / 6.0 - square * (1.0 / 120.0 - square * (1.0 / 5040.0)))));
     pls_vd turned[3] = {cosine * t[0] + sine * (f->n[1] * t[2] - f->n[2] * t[1]), cosine * t[1] + sine * (f->n[2] * t[0] - f->n[0] * t[2]),
                         cosine * t[2] + sine * (f->n[0] * t[1] - f->n[1] * t[0])};
+    pls_vd step[3], ahead = 0.5 * a;
+    for (int c = 0; c < 3; ++c) step[c] = in->dt * (f->u[c] - un * f->n[c]);
+    pls_vd half_turn[3] = {ahead * (f->n[1] * step[2] - f->n[2] * step[1]), ahead * (f->n[2] * step[0] - f->n[0] * step[2]),
+                           ahead * (f->n[0] * step[1] - f->n[1] * step[0])};
     for (int c = 0; c < 3; ++c)
     {
         pls_vd_store(&work->normal[c][k], f->n[c]);
-        pls_vd_store(&work->slip_velocity[c][k], vt[c]);
-        pls_vd_store(&work->spring[c][k], keep * turned[c] + in->dt_before * vt[c]);
+        pls_vd_store(&work->slip_velocity[c][k], f->v[c] - vn * f->n[c]);
+        pls_vd_store(&work->slip_step[c][k], step[c]);
+        pls_vd_store(&work->spring[c][k], turned[c] + (step[c] + half_turn[c]));
     }
     pls_vd_store(&work->delta[k], f->delta);
     pls_vd_store(&work->normal_velocity[k], vn);
-    pls_vd_store(&work->turn[0][k], cosine);
-    pls_vd_store(&work->turn[1][k], sine);
+}
+
+/// v + w x n for three columns each.
+static inline void add_cross(pls_vd out[3], const pls_vd v[3], const pls_vd w[3], const pls_vd n[3])
+{
+    out[0] = v[0] + (w[1] * n[2] - w[2] * n[1]);
+    out[1] = v[1] + (w[2] * n[0] - w[0] * n[2]);
+    out[2] = v[2] + (w[0] * n[1] - w[1] * n[0]);
 }
 
 static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
@@ -166,34 +180,53 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
     const double *history = list->history + section->history - section->first * stride; // of candidate 0
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_v8 place[PLS_W], turn[PLS_W];
-        pls_v4 spring[PLS_W];
+        pls_v8 place[PLS_W], turn[PLS_W], end_turn[PLS_W];
+        pls_v4 spring[PLS_W], lead[PLS_W];
 #pragma GCC unroll 8
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = work->active[k + (size_t)lane];
-            const pls_body_place *i = &in->place[list->row_i[c]], *j = &in->place[list->row_j[c]];
-            pls_v4 wi = pls_v4_load(&in->spin[list->row_i[c]].wx), wj = pls_v4_load(&in->spin[list->row_j[c]].wx);
-            place[lane] = pair_row(i, j);
+            uint32_t i = list->row_i[c], j = list->row_j[c];
+            pls_v4 wi = pls_v4_load(&in->spin[i].wx), wj = pls_v4_load(&in->spin[j].wx);
+            pls_v4 end_i = wi + pls_v4_load(&in->lead[i].tx), end_j = wj + pls_v4_load(&in->lead[j].tx);
+            double ri = in->place[i].radius, rj = in->place[j].radius, gi = in->lead[i].growth, gj = in->lead[j].growth;
+            place[lane] = pair_row(&in->place[i], &in->place[j]);
             if (periodic) place[lane] += pls_v8_join(image_shift(list, c, edge), -image_shift(list, c, edge_rate));
-            turn[lane] = pls_v8_join(i->radius * wi + j->radius * wj, wi + wj);
+            turn[lane] = pls_v8_join((ri - gi) * wi + (rj - gj) * wj, wi + wj);
+            end_turn[lane] = pls_v8_join(ri * end_i + rj * end_j, end_i + end_j);
+            lead[lane] = pls_v4_load(&in->lead[i].fx) + flip_first_three(pls_v4_load(&in->lead[j].fx));
             spring[lane] = pls_v4_load(history + c * stride);
         }
-        pls_vd d[8], w[8], s[4];
+        pls_vd d[8], w[8], e[4], end[8], s[4];
         pls_columns8(place, d);
         pls_columns8(turn, w);
+        pls_columns4(lead, e);
+        pls_columns8(end_turn, end);
         pls_columns4(spring, s);
 
         pls_vd distance = pls_vd_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inv = one / distance;
         frame f;
         for (int a = 0; a < 3; ++a) f.n[a] = d[a] * inv, f.spring[a] = s[a];
         f.delta = d[3] - distance;
-        pls_vd half = 0.5 * f.delta;
-        pls_vd u[3];
-        for (int a = 0; a < 3; ++a) u[a] = w[a] - (inward * half) * w[4 + a]; // l_i w_i + l_j w_j
-        f.v[0] = d[4] + (u[1] * f.n[2] - u[2] * f.n[1]);
-        f.v[1] = d[5] + (u[2] * f.n[0] - u[0] * f.n[2]);
-        f.v[2] = d[6] + (u[0] * f.n[1] - u[1] * f.n[0]);
+        pls_vd half = 0.5 * f.delta, cut = inward * half, levers[3], v[3];
+        for (int a = 0; a < 3; ++a)
+        {
+            levers[a] = end[a] - cut * end[4 + a]; // l_i w_i + l_j w_j
+            v[a] = d[4 + a] + e[a];
+        }
+        add_cross(f.v, v, levers, f.n);
+
+        // Half a step back: n, delta and levers as they were, from the relative velocity of the centres, minus d[4..6], and the growth of radii.
+        pls_vd approach = d[4] * f.n[0] + d[5] * f.n[1] + d[6] * f.n[2], back = (0.5 * in->dt) * inv, middle[3], old_levers[3], u[3];
+        pls_vd old_cut = cut - inward * (0.25 * in->dt * approach + 0.5 * e[3]);
+        for (int a = 0; a < 3; ++a)
+        {
+            middle[a] = f.n[a] + back * (d[4 + a] - approach * f.n[a]);
+            old_levers[a] = w[a] - old_cut * w[4 + a];
+        }
+        add_cross(u, d + 4, old_levers, middle);
+        pls_vd along = u[0] * middle[0] + u[1] * middle[1] + u[2] * middle[2];
+        for (int a = 0; a < 3; ++a) f.u[a] = u[a] - along * middle[a];
         f.spin = 0.5 * (w[4] * f.n[0] + w[5] * f.n[1] + w[6] * f.n[2]);
         set_frame(work, k, &f, in);
         pls_vd_store(&work->lever[k], half);
@@ -216,17 +249,11 @@ static inline int lanes_left(const pls_contact_work *work, size_t k)
     return work->active_count - k < PLS_W ? (int)(work->active_count - k) : PLS_W;
 }
 
-/// Spring (and the law's own numbers) back to the history, the spring half a step and half a turn ahead.
-static inline void store_history(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, size_t k, int kept)
+/// Spring and the law's own numbers back to the history.
+static inline void store_history(pls_pair_list *list, const pls_pair_section *section, pls_contact_work *work, size_t k, int kept)
 {
-    pls_vd n[3], s[3], cosine = pls_vd_load(&work->turn[0][k]), sine = pls_vd_load(&work->turn[1][k]);
-    for (int c = 0; c < 3; ++c)
-    {
-        n[c] = pls_vd_load(&work->normal[c][k]);
-        s[c] = pls_vd_load(&work->spring[c][k]) + in->dt_after * pls_vd_load(&work->slip_velocity[c][k]);
-    }
-    pls_vd column[4] = {cosine * s[0] + sine * (n[1] * s[2] - n[2] * s[1]), cosine * s[1] + sine * (n[2] * s[0] - n[0] * s[2]),
-                        cosine * s[2] + sine * (n[0] * s[1] - n[1] * s[0]), kept > 0 ? pls_vd_load(&work->history[0][k]) : pls_vd_set(0.0)};
+    pls_vd column[4] = {pls_vd_load(&work->spring[0][k]), pls_vd_load(&work->spring[1][k]), pls_vd_load(&work->spring[2][k]),
+                        kept > 0 ? pls_vd_load(&work->history[0][k]) : pls_vd_set(0.0)};
     double *row[PLS_W];
     int lanes = lanes_left(work, k);
     const size_t stride = (size_t)section->stride;
@@ -238,7 +265,7 @@ static inline void store_history(pls_pair_list *list, const pls_contact_input *i
         for (int lane = 0; lane < lanes; ++lane) row[lane][3 + h] = work->history[h][k + (size_t)lane];
 }
 
-static inline void store_pairs(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, int kept)
+static inline void store_pairs(pls_pair_list *list, const pls_pair_section *section, pls_contact_work *work, int kept)
 {
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
@@ -258,7 +285,7 @@ static inline void store_pairs(pls_pair_list *list, const pls_contact_input *in,
 #pragma GCC unroll 8
         for (int lane = 0; lane < PLS_W; ++lane) row[lane] = list->slot + (size_t)work->active[k + (size_t)lane] * PLS_SLOT;
         pls_rows8(column, row, lanes_left(work, k));
-        store_history(list, in, section, work, k, kept);
+        store_history(list, section, work, k, kept);
     }
 }
 
@@ -267,7 +294,8 @@ static inline void store_pairs(pls_pair_list *list, const pls_contact_input *in,
 /// A half-space: outward normal N through a point, moving as a rigid body. n = -N, overlap r - N.(x - X).
 typedef struct wall_frame
 {
-    double normal[3], position[3], velocity[3], spin[3], inv_mass;
+    double normal[3], position[3], inv_mass;
+    double velocity[2][3], spin[2][3]; ///< in the middle and at the end of the step
 } wall_frame;
 
 static wall_frame wall_of(const pls_contact_input *in, uint32_t row)
@@ -275,7 +303,12 @@ static wall_frame wall_of(const pls_contact_input *in, uint32_t row)
     const pls_body_place *p = &in->place[row];
     const pls_body_spin *w = &in->spin[row];
     pls_vec3 n = pls_wall_normal(&in->orientation[row], in->domain->dimension);
-    return (wall_frame){{n.x, n.y, n.z}, {p->x, p->y, p->z}, {p->vx, p->vy, p->vz}, {w->wx, w->wy, w->wz}, p->inv_mass};
+    const pls_body_load *e = &in->lead[row];
+    return (wall_frame){.normal = {n.x, n.y, n.z},
+                        .position = {p->x, p->y, p->z},
+                        .inv_mass = p->inv_mass,
+                        .velocity = {{p->vx, p->vy, p->vz}, {p->vx + e->fx, p->vy + e->fy, p->vz + e->fz}},
+                        .spin = {{w->wx, w->wy, w->wz}, {w->wx + e->tx, w->wy + e->ty, w->wz + e->tz}}};
 }
 
 static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_pair_block *block,
@@ -303,18 +336,20 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
     const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0;
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_v8 place[PLS_W];
+        pls_v8 place[PLS_W], lead[PLS_W];
         pls_v4 turn[PLS_W], spring[PLS_W];
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = work->active[k + (size_t)lane];
             uint32_t i = list->row_i[c];
             place[lane] = pls_v8_load(&in->place[i].x);
+            lead[lane] = pls_v8_load(&in->lead[i].fx);
             turn[lane] = pls_v4_load(&in->spin[i].wx);
             spring[lane] = pls_v4_load(list->history + section->history + (c - section->first) * (size_t)section->stride);
         }
-        pls_vd d[8], w[4], s[4], x[3], arm[3], height = pls_vd_set(0.0);
+        pls_vd d[8], e[8], w[4], s[4], x[3], arm[3], height = pls_vd_set(0.0);
         pls_columns8(place, d);
+        pls_columns8(lead, e);
         pls_columns4(turn, w);
         pls_columns4(spring, s);
         for (int a = 0; a < 3; ++a)
@@ -331,14 +366,30 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
             arm[a] = x[a] + lever * f.n[a]; // contact point from the wall's position
             pls_vd_store(&work->point[a][k], arm[a]);
         }
-        const double *ww = wall->spin;
+        const double *ww = wall->spin[0], *end = wall->spin[1];
         for (int a = 0; a < 3; ++a)
         {
             int b = (a + 1) % 3, c = (a + 2) % 3;
-            pls_vd of_body = d[4 + a] + lever * (w[b] * f.n[c] - w[c] * f.n[b]);
-            pls_vd of_wall = wall->velocity[a] + (ww[b] * arm[c] - ww[c] * arm[b]);
-            f.v[a] = of_body - of_wall;
+            f.v[a] = d[4 + a] + e[a] + lever * ((w[b] + e[4 + b]) * f.n[c] - (w[c] + e[4 + c]) * f.n[b]) -
+                     (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
         }
+
+        // Half a step back.
+        double n[3];
+        for (int a = 0; a < 3; ++a)
+            n[a] = -wall->normal[a] + 0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
+        pls_vd old_x[3], old_arm[3], u[3];
+        for (int a = 0; a < 3; ++a) old_x[a] = x[a] - (0.5 * in->dt) * (d[4 + a] - wall->velocity[0][a]);
+        pls_vd old_radius = d[3] - e[3];
+        pls_vd old_lever = old_radius - (0.5 * inward) * (old_radius + (n[0] * old_x[0] + n[1] * old_x[1] + n[2] * old_x[2]));
+        for (int a = 0; a < 3; ++a) old_arm[a] = old_x[a] + old_lever * n[a];
+        for (int a = 0; a < 3; ++a)
+        {
+            int b = (a + 1) % 3, c = (a + 2) % 3;
+            u[a] = d[4 + a] + old_lever * (w[b] * n[c] - w[c] * n[b]) - (wall->velocity[0][a] + (ww[b] * old_arm[c] - ww[c] * old_arm[b]));
+        }
+        pls_vd along = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
+        for (int a = 0; a < 3; ++a) f.u[a] = u[a] - along * n[a];
         f.spin = 0.5 * ((w[0] + ww[0]) * f.n[0] + (w[1] + ww[1]) * f.n[1] + (w[2] + ww[2]) * f.n[2]);
         set_frame(work, k, &f, in);
         pls_vd_store(&work->lever[k], lever);
@@ -347,7 +398,7 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
     }
 }
 
-static void store_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, int kept)
+static void store_walls(pls_pair_list *list, const pls_pair_section *section, pls_contact_work *work, int kept)
 {
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
@@ -378,7 +429,7 @@ static void store_walls(pls_pair_list *list, const pls_contact_input *in, const 
         }
         pls_rows8(first, row, lanes_left(work, k));
         pls_rows8(second, next, lanes_left(work, k));
-        store_history(list, in, section, work, k, kept);
+        store_history(list, section, work, k, kept);
     }
 }
 
@@ -390,9 +441,9 @@ static void begin_springs(pls_contact_work *work, const pls_contact_input *in)
     for (size_t m = 0; m < work->fresh_count; ++m)
     {
         size_t k = work->fresh[m];
-        double vn = work->normal_velocity[k], longest = 2.0 * in->dt_before;
-        double since = vn * longest > work->delta[k] ? work->delta[k] / vn : longest;
-        for (int a = 0; a < 3; ++a) work->spring[a][k] = since * work->slip_velocity[a][k];
+        double approach = work->normal_velocity[k] * in->dt; // of the whole step
+        double part = approach > work->delta[k] ? work->delta[k] / approach : 1.0;
+        for (int a = 0; a < 3; ++a) work->spring[a][k] = part * work->slip_step[a][k];
     }
 }
 
@@ -409,7 +460,7 @@ static void apply_law(const pls_law *law, const pls_contact_input *in, pls_conta
 {
     pls_law_batch batch = {
         .count = (work->active_count + 7) / 8 * 8,
-        .dt = 2.0 * in->dt_before, // at the start of a run no time has passed, and nothing has slid
+        .dt = in->dt,
         .constants = law->constants,
         .delta = work->delta,
         .normal_velocity = work->normal_velocity,
@@ -457,6 +508,6 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
     if (kept > 0) load_law_history(list, section, work, kept);
     begin_springs(work, in);
     apply_law(law, in, work);
-    if (section->wall) store_walls(list, in, section, work, kept);
-    else store_pairs(list, in, section, work, kept);
+    if (section->wall) store_walls(list, section, work, kept);
+    else store_pairs(list, section, work, kept);
 }

@@ -16,24 +16,32 @@ typedef struct pls_body_place
 {
     double x, y, z;    ///< [m]
     double radius;     ///< bounding radius [m], infinite for unbounded bodies
-    double vx, vy, vz; ///< [m/s]; within a step the predicted velocity that laws see
+    double vx, vy, vz; ///< [m/s]; within a step the velocity of its middle
     double inv_mass;   ///< [1/kg], 0 for bodies that no force moves
 } pls_body_place;
 
 typedef struct pls_body_spin
 {
-    double wx, wy, wz;  ///< [rad/s]; within a step the predicted one
+    double wx, wy, wz;  ///< [rad/s]; within a step that of its middle
     double inv_inertia; ///< 1/I of bodies with three equal moments [1/(kg m^2)], 0 for others
 } pls_body_spin;
 
-/// Force and torque of one instant. The fourth numbers ride along because their bytes are loaded anyway.
+/// Force and torque of one instant.
 typedef struct pls_body_load
 {
-    double fx, fy, fz;    ///< [N]
-    double damping_power; ///< half of the power taken by the dashpots of its contacts [W]
-    double tx, ty, tz;    ///< [N m]
-    double energy_damped; ///< half of the energy taken by them since the start [J]
+    double fx, fy, fz; ///< [N]
+    double growth;     ///< 0; see pls_bodies for what it means within a step
+    double tx, ty, tz; ///< [N m]
+    double spare;      ///< keeps rows aligned
 } pls_body_load;
+
+/// What the contacts of a body have taken from motion since the start; half of each contact goes to either body.
+typedef struct pls_body_energy
+{
+    double damped; ///< by dashpots [J]
+    double power;  ///< by dashpots, now [W]
+    double slid;   ///< by sliding [J]
+} pls_body_energy;
 
 typedef struct pls_body_mass
 {
@@ -74,7 +82,7 @@ enum pls_body_flags
     X(pls_body_load, load)                                                                                                                           \
     X(pls_body_load, load_before)                                                                                                                    \
     X(pls_body_mass, mass)                                                                                                                           \
-    X(double, energy_slid)                                                                                                                           \
+    X(pls_body_energy, energy) \
     X(double, scale)                                                                                                                                 \
     X(pls_body_kind, kind)
 
@@ -95,16 +103,19 @@ enum pls_body_flags
     X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", spin, pls_body_spin, inv_inertia, "inverse moment of isotropic bodies")                     \
     X("orientation", PLS_F64, 4, PERSISTS | FRAME, "", orientation, pls_body_orientation, w, "unit quaternion w x y z, grain frame to world")        \
     X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                                                \
-    X("damping_power", PLS_F64, 1, PERSISTS, "W", load, pls_body_load, damping_power, "half of the power taken by its contacts' dashpots")           \
     X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                                     \
-    X("energy_damped", PLS_F64, 1, PERSISTS, "J", load, pls_body_load, energy_damped, "half of the energy taken by its contacts' dashpots")          \
+    X("energy_damped", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, damped, "half of the energy taken by its contacts' dashpots") \
+    X("damping_power", PLS_F64, 1, PERSISTS, "W", energy, pls_body_energy, power, "half of the power taken by its contacts' dashpots") \
     X("force_before", PLS_F64, 3, PERSISTS, "N", load_before, pls_body_load, fx, "force one step earlier")                                           \
     X("torque_before", PLS_F64, 3, PERSISTS, "N m", load_before, pls_body_load, tx, "torque one step earlier")                                       \
     X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                                         \
     X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                                            \
-    X("energy_slid", PLS_F64, 1, PERSISTS, "J", energy_slid, double, , "half of the energy taken by sliding at its contacts")                        \
+    X("energy_slid", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, slid, "half of the energy taken by sliding at its contacts") \
     X("scale", PLS_F64, 1, PERSISTS, "", scale, double, , "multiplies the lengths of its shape")
 
+/// Within a step, between kick and finish, `load_before` is done with and holds instead what predicts the velocities of the step's end from those of its middle:
+/// dt/4 (a(t) + a(t - dt)), [m/s] in the place of the force and [rad/s] in that of the torque; `growth` is then half the change of radius in this step [m].
+///
 /// Zero-initialise; `pls_bodies_free` releases.
 typedef struct pls_bodies
 {

@@ -78,7 +78,7 @@ static const pls_section sections[] = {
         {section, "end", PLS_KEY_NUMBER, PLS_KEY_INFINITE, 0, NULL, NULL, "s", "inf", POSITIVE, "no looks after this time"},        \
     {                                                                                                                               \
         section, "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY,                                                             \
-            "name of its file; by default what it observes, with a number if taken"                                                 \
+            "name of its file; by default the entry for a particle observer, else collection or frames; with a number if taken"     \
     }
 
 static const pls_key keys[] = {
@@ -184,7 +184,8 @@ static const pls_key keys[] = {
     {"contact", "between", PLS_KEY_NAMES, REQUIRED, 0, "all", NULL, "", NULL, ANY, "[material, material], or `all` for every pair"},
     {"contact", "law", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a contact law"},
     {"contact", "lever", PLS_KEY_WORD, 0, 0, "contact_point|surface", NULL, "", "contact_point", ANY,
-     "where the velocities of touching grains are taken: at the one point where the force acts (energy is booked exactly), or at each grain's own surface (P1 eq. 15b, LAMMPS)"},
+     "where the velocities of touching grains are taken: at the one point where the force acts (energy is booked exactly), or at each "
+     "grain's own surface (P1 eq. 15b, LAMMPS)"},
 
     {"gravity", "gravity", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m/s^2", NULL, ANY, "acceleration of every free body"},
     {"field_force", "field", PLS_KEY_SECTION, REQUIRED, 0, NULL, "field", "", NULL, ANY, "a field of forces"},

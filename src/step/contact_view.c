@@ -49,24 +49,13 @@ static void fill_entry(const pls_world *world, const pls_pair_section *section, 
     e->point = pls_add(x, pls_scale(e->normal, p->radius - 0.5 * e->delta));
     e->force = pls_vec(slot[0], slot[1], slot[2]);
 
-    // The stored spring is half a step ahead of now; take its lead back.
     const pls_law *law = &world->laws.law[section->law];
     const double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
-    pls_vec3 wi = pls_vec(b->spin[i].wx, b->spin[i].wy, b->spin[i].wz), wj = pls_vec(b->spin[j].wx, b->spin[j].wy, b->spin[j].wz);
-    pls_vec3 arm_i = pls_sub(e->point, x), arm_j = section->wall ? pls_sub(e->point, pls_vec(q->x, q->y, q->z)) : pls_sub(arm_i, d);
-    pls_vec3 v = pls_sub(pls_add(pls_vec(p->vx, p->vy, p->vz), pls_cross(wi, arm_i)), pls_add(pls_vec(q->vx, q->vy, q->vz), pls_cross(wj, arm_j)));
-    if (!section->wall && world->domain.any_periodic)
-    {
-        const int16_t *s = list->shift[c];
-        v = pls_sub(v, pls_vec(s[0] * world->domain.edge_rate[0], s[1] * world->domain.edge_rate[1], s[2] * world->domain.edge_rate[2]));
-    }
-    pls_vec3 slip = pls_sub(v, pls_scale(e->normal, pls_dot(v, e->normal)));
-    pls_vec3 spring = pls_sub(pls_vec(history[0], history[1], history[2]), pls_scale(slip, 0.5 * world->dt));
     double mass_sum = p->inv_mass + q->inv_mass;
     pls_contact_point point = {.delta = fmax(e->delta, 0.0),
                                .effective_radius = effective_radius,
                                .effective_mass = mass_sum > 0.0 ? 1.0 / mass_sum : INFINITY,
-                               .spring_squared = pls_dot(spring, spring),
+                               .spring_squared = history[0] * history[0] + history[1] * history[1] + history[2] * history[2],
                                .history = history + 3};
     law->ops->stiffness(law->constants, &point, &e->stiffness);
     law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);

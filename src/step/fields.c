@@ -35,6 +35,7 @@ enum body_columns
 #define OFFSET_EMPTY_pls_body_spin(member) offsetof(pls_body_spin, member)
 #define OFFSET_EMPTY_pls_body_orientation(member) offsetof(pls_body_orientation, member)
 #define OFFSET_EMPTY_pls_body_load(member) offsetof(pls_body_load, member)
+#define OFFSET_EMPTY_pls_body_energy(member) offsetof(pls_body_energy, member)
 #define OFFSET_EMPTY_pls_body_mass(member) offsetof(pls_body_mass, member)
 #define OFFSET_EMPTY_pls_body_kind(member) offsetof(pls_body_kind, member)
 
@@ -50,7 +51,7 @@ typedef struct pls_remembered remembered;
 static const pls_field contact_fields[] = {
     {"body_i", PLS_U32, 1, PERSISTS | ID, "", "number of the body with the lower number (of the body, at a wall)", 0, offsetof(remembered, number_i)},
     {"body_j", PLS_U32, 1, PERSISTS | ID, "", "number of its partner (of the wall)", 0, offsetof(remembered, number_j)},
-    {"spring", PLS_F64, 3, PERSISTS, "m", "tangential spring, half a step ahead", 0, offsetof(remembered, spring)},
+    {"spring", PLS_F64, 3, PERSISTS, "m", "tangential spring", 0, offsetof(remembered, spring)},
     {"history", PLS_F64, PLS_LAW_MAX_HISTORY, PERSISTS, "", "the law's own numbers", 0, offsetof(remembered, history)},
 };
 

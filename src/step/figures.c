@@ -22,8 +22,8 @@ enum
 static void add_body(const pls_world *world, uint32_t row, double *sum)
 {
     const pls_bodies *b = &world->bodies;
-    sum[DAMPED] += b->load[row].energy_damped;
-    sum[SLID] += b->energy_slid[row];
+    sum[DAMPED] += b->energy[row].damped;
+    sum[SLID] += b->energy[row].slid;
     if (b->kind[row].flags & PLS_BODY_UNBOUNDED) return;
     const pls_body_place *p = &b->place[row];
     const pls_body_mass *m = &b->mass[row];

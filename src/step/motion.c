@@ -111,6 +111,7 @@ pls_status pls_special_before(pls_world *world)
         s->velocity = pls_vec(p->vx, p->vy, p->vz);
         s->spin = pls_vec(w->wx, w->wy, w->wz);
         s->orientation = body_quat(&world->bodies, s->row);
+        s->load_before = world->bodies.load_before[s->row];
     }
     return PLS_OK;
 }
@@ -141,18 +142,71 @@ static void rotate_freely(pls_vec3 momentum, pls_quat *q, const pls_body_mass *m
 
 static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m) { return turn_to_world(q, divide(turn_to_body(q, momentum), m)); }
 
+/// What contacts see of a body within the step (velocity_verlet_simd.c): velocity of the middle and, apart, what leads to that of the end.
+static void show_velocity(pls_bodies *b, uint32_t row, pls_vec3 middle, pls_vec3 end)
+{
+    pls_body_load *lead = &b->load_before[row];
+    set_velocity(&b->place[row], middle);
+    lead->fx = end.x - middle.x, lead->fy = end.y - middle.y, lead->fz = end.z - middle.z;
+}
+
+static void show_spin(pls_bodies *b, uint32_t row, pls_vec3 middle, pls_vec3 end)
+{
+    pls_body_load *lead = &b->load_before[row];
+    set_spin(&b->spin[row], middle);
+    lead->tx = end.x - middle.x, lead->ty = end.y - middle.y, lead->tz = end.z - middle.z;
+}
+
+/// Angle by which one orientation is turned against another, as a vector [rad].
+static pls_vec3 angle_between(pls_quat from, pls_quat to)
+{
+    pls_quat turn = pls_quat_multiply(to, pls_quat_conjugate(from));
+    pls_vec3 axis = pls_scale(pls_vec(turn.x, turn.y, turn.z), turn.w < 0.0 ? -1.0 : 1.0);
+    double sine = pls_length(axis);
+    return sine > 0.0 ? pls_scale(axis, 2.0 * atan2(sine, fabs(turn.w)) / sine) : axis;
+}
+
+static pls_vec3 sum_of_torques(const pls_bodies *b, const pls_special *s)
+{
+    const pls_body_load *now = &b->load[s->row];
+    return pls_vec(now->tx + s->load_before.tx, now->ty + s->load_before.ty, now->tz + s->load_before.tz);
+}
+
 static void drift_anisotropic(pls_world *world, pls_special *s)
 {
     pls_bodies *b = &world->bodies;
     const pls_body_mass *m = &b->mass[s->row];
-    const pls_body_load *now = &b->load[s->row], *before = &b->load_before[s->row];
-    pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz), sum = pls_add(torque, pls_vec(before->tx, before->ty, before->tz));
+    const pls_body_load *now = &b->load[s->row];
+    pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz);
     pls_vec3 momentum = turn_to_world(s->orientation, multiply(turn_to_body(s->orientation, s->spin), m));
     s->half_spin = pls_add(momentum, pls_scale(torque, 0.5 * world->dt));
     pls_quat q = s->orientation;
     rotate_freely(s->half_spin, &q, m, world->dt);
     set_quat(&b->orientation[s->row], q);
-    set_spin(&b->spin[s->row], spin_of(pls_add(s->half_spin, pls_scale(sum, 0.25 * world->dt)), q, m));
+    pls_vec3 middle = pls_scale(angle_between(s->orientation, q), 1.0 / world->dt); // the rotation that was made
+    show_spin(b, s->row, middle, spin_of(pls_add(s->half_spin, pls_scale(sum_of_torques(b, s), 0.25 * world->dt)), q, m));
+}
+
+static void drift_driven_spin(pls_world *world, pls_special *s, pls_vec3 w_mid)
+{
+    pls_bodies *b = &world->bodies;
+    const pls_body_load *now = &b->load[s->row];
+    const pls_body_mass *m = &b->mass[s->row];
+    unsigned axes = motion_of(world, s->row)->axes;
+    bool anisotropic = (b->kind[s->row].flags & PLS_BODY_ANISOTROPIC) != 0;
+    if (anisotropic && !(axes & (PLS_AXIS_RX | PLS_AXIS_RY | PLS_AXIS_RZ)))
+    {
+        drift_anisotropic(world, s);
+        return;
+    }
+    // Partly driven rotation of an anisotropic body: each free world axis answers with its own moment.
+    double inv = b->spin[s->row].inv_inertia, dt = world->dt;
+    pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz), sum = sum_of_torques(b, s);
+    pls_vec3 accelerate = anisotropic ? spin_of(torque, s->orientation, m) : pls_scale(torque, inv);
+    pls_vec3 accelerate_sum = anisotropic ? spin_of(sum, s->orientation, m) : pls_scale(sum, inv);
+    s->half_spin = choose(axes, PLS_AXIS_RX, w_mid, pls_add(s->spin, pls_scale(accelerate, 0.5 * dt)));
+    set_quat(&b->orientation[s->row], pls_quat_unit(pls_quat_multiply(rotation_by(pls_scale(s->half_spin, dt)), s->orientation)));
+    show_spin(b, s->row, s->half_spin, choose(axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate_sum, 0.25 * dt))));
 }
 
 static pls_status drift_driven(pls_world *world, pls_special *s)
@@ -160,43 +214,27 @@ static pls_status drift_driven(pls_world *world, pls_special *s)
     pls_bodies *b = &world->bodies;
     const pls_motion_def *motion = motion_of(world, s->row);
     pls_body_place *p = &b->place[s->row];
-    const pls_body_load *now = &b->load[s->row], *before = &b->load_before[s->row];
-    double dt = world->dt;
+    const pls_body_load *now = &b->load[s->row], *before = &s->load_before;
+    double dt = world->dt, inv_mass = p->inv_mass;
     pls_vec3 v_mid, w_mid;
     PLS_TRY(driven_velocities(world, s->row, world->time + 0.5 * dt, &v_mid, &w_mid));
     PLS_TRY(driven_velocities(world, s->row, world->time + dt, &s->driven_velocity, &s->driven_spin));
+    drift_driven_spin(world, s, w_mid);
 
-    bool anisotropic = (b->kind[s->row].flags & PLS_BODY_ANISOTROPIC) != 0;
-    bool turns_driven = (motion->axes & (PLS_AXIS_RX | PLS_AXIS_RY | PLS_AXIS_RZ)) != 0;
-    if (anisotropic && !turns_driven) drift_anisotropic(world, s);
-    else
-    {
-        // Partly driven rotation of an anisotropic body: each free world axis answers with its own moment.
-        pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz), sum = pls_add(torque, pls_vec(before->tx, before->ty, before->tz));
-        double inv = b->spin[s->row].inv_inertia;
-        const pls_body_mass *m = &b->mass[s->row];
-        pls_vec3 accelerate = anisotropic ? spin_of(torque, s->orientation, m) : pls_scale(torque, inv);
-        pls_vec3 accelerate_sum = anisotropic ? spin_of(sum, s->orientation, m) : pls_scale(sum, inv);
-        s->half_spin = choose(motion->axes, PLS_AXIS_RX, w_mid, pls_add(s->spin, pls_scale(accelerate, 0.5 * dt)));
-        pls_vec3 seen = choose(motion->axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate_sum, 0.25 * dt)));
-        set_quat(&b->orientation[s->row], pls_quat_unit(pls_quat_multiply(rotation_by(pls_scale(s->half_spin, dt)), s->orientation)));
-        set_spin(&b->spin[s->row], seen);
-    }
-
-    double inv_mass = p->inv_mass;
     pls_vec3 force = pls_vec(now->fx, now->fy, now->fz), sum = pls_add(force, pls_vec(before->fx, before->fy, before->fz));
     if (motion->about)
     {
-        pls_vec3 arm = turn_to_world(rotation_by(pls_scale(w_mid, dt)), pls_sub(s->position, motion->centre));
-        set_position(p, pls_add(motion->centre, arm));
+        pls_vec3 arm = turn_to_world(rotation_by(pls_scale(w_mid, dt)), pls_sub(s->position, motion->centre)), end = pls_add(motion->centre, arm);
+        set_position(p, end);
         s->driven_velocity = pls_cross(s->driven_spin, arm);
-        s->half_velocity = v_mid;
-        set_velocity(p, s->driven_velocity);
+        s->half_velocity = pls_scale(pls_sub(end, s->position), 1.0 / dt);
+        show_velocity(b, s->row, s->half_velocity, s->driven_velocity);
         return PLS_OK;
     }
     s->half_velocity = choose(motion->axes, PLS_AXIS_X, v_mid, pls_add(s->velocity, pls_scale(force, 0.5 * dt * inv_mass)));
     set_position(p, pls_add(s->position, pls_scale(s->half_velocity, dt)));
-    set_velocity(p, choose(motion->axes, PLS_AXIS_X, s->driven_velocity, pls_add(s->half_velocity, pls_scale(sum, 0.25 * dt * inv_mass))));
+    show_velocity(b, s->row, s->half_velocity,
+                  choose(motion->axes, PLS_AXIS_X, s->driven_velocity, pls_add(s->half_velocity, pls_scale(sum, 0.25 * dt * inv_mass))));
     return PLS_OK;
 }
 

@@ -36,10 +36,10 @@ static pls_status rates(pls_world *world, bool middle, const double *values)
         {
             const pls_body_place *p = &world->bodies.place[row];
             const pls_body_spin *s = &world->bodies.spin[row];
-            pls_vec3 end = pls_vec(p->x, p->y, p->z), spin_end = pls_vec(s->wx, s->wy, s->wz);
+            pls_vec3 end = pls_vec(p->x, p->y, p->z), spin_middle = pls_vec(s->wx, s->wy, s->wz); // rows hold velocities of the middle now
             at.position = middle ? pls_scale(pls_add(state->position, end), 0.5) : state->position;
             at.velocity = middle ? pls_scale(pls_sub(end, state->position), 1.0 / world->dt) : state->velocity;
-            at.angular_velocity = middle ? pls_scale(pls_add(state->spin, spin_end), 0.5) : state->spin;
+            at.angular_velocity = middle ? spin_middle : state->spin;
             at.radius = p->radius;
         }
         double *rate = world->state_rate + state->first;
@@ -61,32 +61,15 @@ pls_status pls_states_advance(pls_world *world)
     return PLS_OK;
 }
 
-/// Amid a step velocities hold the half-step values plus a prediction from the last two loads, which the finish takes back with the inverse mass of the
-/// end (velocity_verlet_simd.c): make the prediction agree with it.
-static void predict_again(pls_world *world, uint32_t row, double inv_mass_before, double inv_inertia_before)
-{
-    pls_body_place *p = &world->bodies.place[row];
-    pls_body_spin *s = &world->bodies.spin[row];
-    const pls_body_load *now = &world->bodies.load[row], *last = &world->bodies.load_before[row];
-    double mass = 0.25 * world->dt * (p->inv_mass - inv_mass_before), inertia = 0.25 * world->dt * (s->inv_inertia - inv_inertia_before);
-    p->vx += mass * (now->fx + last->fx);
-    p->vy += mass * (now->fy + last->fy);
-    p->vz += mass * (now->fz + last->fz);
-    s->wx += inertia * (now->tx + last->tx);
-    s->wy += inertia * (now->ty + last->ty);
-    s->wz += inertia * (now->tz + last->tz);
-}
-
 static pls_status drive_scale(pls_world *world, const pls_state_instance *state)
 {
     uint32_t row = pls_body_row(world, state->def.body);
     if (row == PLS_NO_ROW || state->def.target == PLS_STATE_FREE) return PLS_OK;
     double value = world->state_value[state->first], before = world->bodies.place[row].radius;
-    double inv_mass = world->bodies.place[row].inv_mass, inv_inertia = world->bodies.spin[row].inv_inertia;
     double unit = world->shape[world->bodies.kind[row].shape].radius;
     pls_status status = pls_body_rescale(world, row, state->def.target == PLS_STATE_RADIUS ? value / unit : value, state->def.keep_density);
     if (status != PLS_OK) return pls_fail_context(status, "state '%s': ", state->def.name);
-    if (world->prepared && !(world->bodies.kind[row].flags & PLS_BODY_SPECIAL)) predict_again(world, row, inv_mass, inv_inertia);
+    if (world->prepared) world->bodies.load_before[row].growth = 0.5 * (world->bodies.place[row].radius - before); // springs take the levers of mid-step
     world->list.drift += 2.0 * fmax(0.0, world->bodies.place[row].radius - before);
     return PLS_OK;
 }

@@ -22,17 +22,16 @@ enum
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
-static void find_contacts_and_forces(pls_world *world, double dt_before)
+static void find_contacts_and_forces(pls_world *world, double dt)
 {
     pls_pair_list *list = &world->list;
     const pls_contact_input input = {.place = world->bodies.place,
                                      .spin = world->bodies.spin,
+                                     .lead = world->bodies.load_before,
                                      .orientation = world->bodies.orientation,
                                      .domain = &world->domain,
                                      .laws = &world->laws,
-                                     .dt = world->dt,
-                                     .dt_before = dt_before,
-                                     .dt_after = 0.5 * world->dt};
+                                     .dt = dt};
 #pragma omp parallel for schedule(static)
     for (size_t b = 0; b < list->block_count; ++b)
         PLS_SIMD_SELECT(pls_contact_block)(list, &input, &list->block[b], &world->work[omp_get_thread_num()]);
@@ -137,7 +136,7 @@ static pls_status complete_step(pls_world *world, bool go_on)
     double time = (double)(world->step + 1) * world->dt;
     pls_domain_at(&world->domain, time);
     PLS_TRY(pls_neighbours_refresh(world));
-    find_contacts_and_forces(world, 0.5 * world->dt);
+    find_contacts_and_forces(world, world->dt);
     PLS_TRY(pls_book_parted(world));
     PLS_TRY(finish_bodies(world, world->dt, time, go_on));
     if (!go_on) pls_special_finish(world);

@@ -1,11 +1,11 @@
 // velocity_verlet_simd.c -- velocity Verlet for bodies (P1 section 4.2.2), one body at a time, a row of four numbers per instruction.
 //
-//     begin    u = v + dt/2 a(t)        x += dt u        q <- rotation by dt u_w        v~ = u + dt/4 (a(t) + a(t - dt))
+//     begin    u = v + dt/2 a(t)        x += dt u        q <- rotation by dt u_w        e = dt/4 (a(t) + a(t - dt))
 //     finish   a = F/m                  v = u + dt/2 a
 //
-// v~ is the velocity at t + dt that laws see. Second order needs an estimate of a(t + dt/2 .. t + dt) there; the last acceleration alone would do, but halves the
-// step at which dashpots stay stable. The mean of the last two keeps the order and has the limit of the plain leapfrog, (2/w)(sqrt(1 + z^2) - z), for all damping
-// ratios z (docs/theory.md). u is not stored: finish takes it back from v~.
+// In between rows hold u, the velocity of the middle of the step: what tangential springs integrate. Dashpots and body forces see the velocity of the end, u + e.
+// Second order needs an estimate of the acceleration there; the last one alone would do, but halves the step at which dashpots stay stable. The mean of the last two
+// keeps the order and has the limit of the plain leapfrog, (2/w)(sqrt(1 + z^2) - z), for all damping ratios z (docs/theory.md).
 //
 // Rotation: q <- (1, dt/2 w) q / |...|, the Cayley form of the exponential map: a rotation about w by 2 atan(|w| dt / 2), second order, unit by construction.
 // (P1 eq. 23 as printed lacks the old orientation.) Bodies with three different moments are advanced apart (rigid_rotation.c).
@@ -33,7 +33,8 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
     {
         pls_body_place *p = &bodies->place[row];
         pls_body_spin *s = &bodies->spin[row];
-        const pls_body_load *now = &bodies->load[row], *before = &bodies->load_before[row];
+        const pls_body_load *now = &bodies->load[row];
+        pls_body_load *before = &bodies->load_before[row];
         pls_v4 x = pls_v4_load(&p->x), v = pls_v4_load(&p->vx), w = pls_v4_load(&s->wx);
         pls_v4 f = pls_v4_load(&now->fx), t = pls_v4_load(&now->tx);
         pls_v4 a = only_first_three(f * p->inv_mass), b = only_first_three(t * s->inv_inertia);
@@ -43,8 +44,10 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
         pls_v4 u = v + half * a, uw = w + half * b;
         pls_v4 step = only_first_three(dt * u);
         pls_v4_store(&p->x, x + step);
-        pls_v4_store(&p->vx, u + quarter * (a + a_before));
-        pls_v4_store(&s->wx, uw + quarter * (b + b_before));
+        pls_v4_store(&p->vx, u);
+        pls_v4_store(&s->wx, uw);
+        pls_v4_store(&before->fx, quarter * (a + a_before));
+        pls_v4_store(&before->tx, quarter * (b + b_before));
         turn(&bodies->orientation[row], uw, half);
 
         pls_v4 square = step * step;
@@ -115,23 +118,21 @@ static inline void gather_walls(const pls_pair_list *list, size_t row, gathered 
 
 static inline void finish_row(pls_bodies *bodies, size_t row, double dt, const gathered *g)
 {
-    const double half = 0.5 * dt, quarter = 0.25 * dt;
+    const double half = 0.5 * dt;
     pls_body_place *p = &bodies->place[row];
     pls_body_spin *s = &bodies->spin[row];
-    const pls_body_load *now = &bodies->load[row];
-    pls_body_load *before = &bodies->load_before[row];
+    pls_body_load *load = &bodies->load_before[row];
+    pls_body_energy *energy = &bodies->energy[row];
     pls_v4 f = only_first_three(g->force), t = only_first_three(g->torque);
-    pls_v4 mean = only_first_three(pls_v4_load(&now->fx)) * p->inv_mass + only_first_three(pls_v4_load(&before->fx)) * p->inv_mass;
-    pls_v4 mean_turn = only_first_three(pls_v4_load(&now->tx)) * s->inv_inertia + only_first_three(pls_v4_load(&before->tx)) * s->inv_inertia;
-    pls_v4_store(&p->vx, pls_v4_load(&p->vx) - quarter * mean + half * (f * p->inv_mass));
-    pls_v4_store(&s->wx, pls_v4_load(&s->wx) - quarter * mean_turn + half * (t * s->inv_inertia));
+    pls_v4_store(&p->vx, pls_v4_load(&p->vx) + half * (f * p->inv_mass));
+    pls_v4_store(&s->wx, pls_v4_load(&s->wx) + half * (t * s->inv_inertia));
+    pls_v4_store(&load->fx, f);
+    pls_v4_store(&load->tx, t);
 
     double power = 0.5 * g->power; // half of each contact's dissipation to either body
-    bodies->energy_slid[row] += 0.5 * g->work;
-    f[3] = power;
-    t[3] = now->energy_damped + half * (now->damping_power + power);
-    pls_v4_store(&before->fx, f);
-    pls_v4_store(&before->tx, t);
+    energy->damped += half * (energy->power + power);
+    energy->power = power;
+    energy->slid += 0.5 * g->work;
 }
 
 void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,

@@ -1,4 +1,6 @@
+#!/usr/bin/env bash
 # The benchmark programs run in small and print sound JSON; the state does not depend on the instruction set.
+# Runs in an empty folder with PARTICLS_BUILD (the build tree).
 set -euo pipefail
 
 fail() { echo "test_bench.sh: $1" >&2; exit 1; }
@@ -30,5 +32,5 @@ for wrong in "--steps 3.5" "--bodies -1" "--pressed 0.5" "--unknown 1" "--steps"
     status=0
     # shellcheck disable=SC2086
     "$PARTICLS_BUILD/bench/compression" $wrong 2>errors >/dev/null || status=$?
-    [ $status -eq 2 ] && grep -q '^usage:' errors || fail "'$wrong' gave status $status"
+    if [ $status -ne 2 ] || ! grep -q '^usage:' errors; then fail "'$wrong' gave status $status"; fi
 done
