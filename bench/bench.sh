@@ -153,7 +153,7 @@ memory	$(awk '/^MemTotal/ { printf "%.1f GiB", $2 / 1048576 }' /proc/meminfo)
 kernel	$(uname -sr)
 particls	$version$(git -C "$root" log -1 --format=', commit %h' 2>/dev/null || true)
 compiler	$("$(readlink -f "${compiler:-$(command -v cc)}")" --version | head -1)
-LAMMPS	$(if [ $peer = 1 ]; then (lmp -h 2>/dev/null || true) | sed -n 's/^Large-scale.*Simulator - //p' | head -1; else echo "missing (apt-get install lammps)"; fi), neighbour skin $skin m
+LAMMPS	$(if [ $peer = 1 ]; then (lmp -h 2>/dev/null || true) | sed -n "s/^Large-scale.*Simulator - \(.*\)/\1, neighbour skin $skin m/p" | head -1; else echo "missing (apt-get install lammps): nothing is compared with it"; fi)
 TEXT
 
 status=0

@@ -65,6 +65,8 @@ def comparison(results, case, reference):
         first = next(line for line in lines if line["program"] == program)
         rows.append([NAMES[program], str(len(own)), millions(own.values())] + (["1", ""] if program == reference else ratio(own, base))
                     + [f"{first['kinetic_energy']:.6g}"])
+    if reference == "lammps" and not base:
+        print("LAMMPS was not measured here.\n")
     one = lines[0]
     print(f"{one['bodies']:,} spheres, {one['steps']:,} steps; at the end {one['touching']:,} contacts touch, {one['listed']:,} pairs are listed.\n"
           if "touching" in one else f"{one['bodies']:,} spheres, {one['steps']:,} steps.\n")
@@ -149,7 +151,9 @@ def main():
     for line in failures:
         print(f"* {line}")
     for key in different:
-        print(f"* FAILED: {key[0]:,} spheres, {key[2]:,} steps: the final state depends on the instruction set or the number of threads")
+        text = f"{key[0]:,} spheres, {key[2]:,} steps: the final state depends on the instruction set or the number of threads"
+        print(f"* FAILED: {text}")
+        print(text, file=sys.stderr)
     if failures or different:
         print()
     else:
