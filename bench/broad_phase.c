@@ -53,7 +53,8 @@ static pls_status fill_rows(pls_bodies *bodies, size_t count, double ratio, doub
         uint32_t row;
         PLS_TRY(pls_bodies_add(bodies, &row));
         pls_vec3 x = place_of(order[m], edge);
-        bodies->place[row] = (pls_body_place){.x = x.x, .y = x.y, .z = x.z, .radius = radius_of(order[m], count, ratio), .inv_mass = 1.0};
+        bodies->place[row] = (pls_body_place){.x = x.x, .y = x.y, .z = x.z, .radius = radius_of(order[m], count, ratio)};
+        bodies->load[row].inv_mass = 1.0;
     }
     return PLS_OK;
 }

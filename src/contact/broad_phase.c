@@ -252,7 +252,7 @@ static pls_status emit(const grids *g, look_buffer *out, const packed_body *a, c
 {
     // `step`: b's image lies at its wrapped position + step * edge. Positions themselves are not wrapped, so the images they lie in count too.
     const pls_bodies *bodies = g->bodies;
-    if (bodies->place[a->row].inv_mass == 0.0 && bodies->place[b->row].inv_mass == 0.0 &&
+    if (bodies->load[a->row].inv_mass == 0.0 && bodies->load[b->row].inv_mass == 0.0 &&
         !((bodies->kind[a->row].flags | bodies->kind[b->row].flags) & PLS_BODY_SPECIAL))
         return PLS_OK;
     if (out->count == out->capacity) PLS_TRY(pls_reserve(&out->pair, &out->capacity, out->count + 1024, sizeof *out->pair, "near pairs"));

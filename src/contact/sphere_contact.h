@@ -28,16 +28,18 @@ typedef struct pls_contact_work
     size_t active_count, fresh_count;
 } pls_contact_work;
 
-/// What the loops read besides the pair list. Velocities in `place` and `spin` are those of the middle of the step; `lead` adds what makes them those of its end.
+/// What the loops read besides the pair list.
 typedef struct pls_contact_input
 {
     const pls_body_place *place;
     const pls_body_spin *spin;
-    const pls_body_load *lead;
+    const pls_body_load *load;
+    const pls_body_before *before;
     const pls_body_orientation *orientation;
     const pls_domain *domain;
     const pls_law_table *laws;
-    double dt; ///< [s]; 0 at the start of a run: no time has passed, springs and dissipation stay
+    bool growing; ///< radii may have changed in this step
+    double dt;    ///< [s]; 0 at the start of a run: no time has passed, springs and dissipation stay
 } pls_contact_input;
 
 PLS_SIMD_DECLARE(void, pls_contact_block, pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block, pls_contact_work *work);

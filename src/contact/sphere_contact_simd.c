@@ -25,11 +25,19 @@ enum { FETCH_AHEAD = 48 }; ///< candidates; within PLS_PAIR_REACH
 
 static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}); }
 
-/// X_j - X_i, r_i + r_j | v_i - v_j, 1/m_i + 1/m_j from two rows.
+/// X_j - X_i, r_i + r_j | u_i - u_j, lead_z of i less j, from two rows.
 static inline pls_v8 pair_row(const pls_body_place *i, const pls_body_place *j)
 {
-    const pls_v8i of_i = {INT64_MIN, INT64_MIN, INT64_MIN, 0, 0, 0, 0, 0}, of_j = {0, 0, 0, 0, INT64_MIN, INT64_MIN, INT64_MIN, 0};
+    const int64_t minus = INT64_MIN;
+    const pls_v8i of_i = {minus, minus, minus, 0, 0, 0, 0, 0}, of_j = {0, 0, 0, 0, minus, minus, minus, minus};
     return (pls_v8)((pls_v8i)pls_v8_load(&j->x) ^ of_j) + (pls_v8)((pls_v8i)pls_v8_load(&i->x) ^ of_i);
+}
+
+/// w_i + w_j in the middle, lead_x of i less j | the same sum at the end, lead_y of i less j.
+static inline pls_v8 sum_row(pls_v8 i, pls_v8 j)
+{
+    const pls_v8i of_j = {0, 0, 0, INT64_MIN, 0, 0, 0, INT64_MIN};
+    return i + (pls_v8)((pls_v8i)j ^ of_j);
 }
 
 static inline pls_v4 image_shift(const pls_pair_list *list, size_t c, pls_v4 edge)
@@ -170,7 +178,7 @@ static inline void add_cross(pls_vd out[3], const pls_vd v[3], const pls_vd w[3]
 }
 
 static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
-                                                             pls_contact_work *work, int periodic, int effective)
+                                                             pls_contact_work *work, int periodic, int growing, int effective)
 {
     const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0; // is the overlap's half taken off the levers of velocities?
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
@@ -180,61 +188,61 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
     const double *history = list->history + section->history - section->first * stride; // of candidate 0
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_v8 place[PLS_W], turn[PLS_W], end_turn[PLS_W];
-        pls_v4 spring[PLS_W], lead[PLS_W];
+        pls_v8 place[PLS_W], turn[PLS_W], sum[PLS_W];
+        pls_v4 spring[PLS_W];
+        pls_vd growth = pls_vd_set(0.0); // of both radii, half a step's
 #pragma GCC unroll 8
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = work->active[k + (size_t)lane];
             uint32_t i = list->row_i[c], j = list->row_j[c];
-            pls_v4 wi = pls_v4_load(&in->spin[i].wx), wj = pls_v4_load(&in->spin[j].wx);
-            pls_v4 end_i = wi + pls_v4_load(&in->lead[i].tx), end_j = wj + pls_v4_load(&in->lead[j].tx);
-            double ri = in->place[i].radius, rj = in->place[j].radius, gi = in->lead[i].growth, gj = in->lead[j].growth;
+            pls_v8 wi = pls_v8_load(&in->spin[i].wx), wj = pls_v8_load(&in->spin[j].wx);
             place[lane] = pair_row(&in->place[i], &in->place[j]);
             if (periodic) place[lane] += pls_v8_join(image_shift(list, c, edge), -image_shift(list, c, edge_rate));
-            turn[lane] = pls_v8_join((ri - gi) * wi + (rj - gj) * wj, wi + wj);
-            end_turn[lane] = pls_v8_join(ri * end_i + rj * end_j, end_i + end_j);
-            lead[lane] = pls_v4_load(&in->lead[i].fx) + flip_first_three(pls_v4_load(&in->lead[j].fx));
+            sum[lane] = sum_row(wi, wj);
+            turn[lane] = in->place[i].radius * wi + in->place[j].radius * wj;
+            if (growing)
+            {
+                double gi = in->before[i].growth, gj = in->before[j].growth; // levers of mid-step
+                pls_v4 less = gi * pls_v8_low(wi) + gj * pls_v8_low(wj);
+                turn[lane] -= pls_v8_join(less, pls_v4_set(0.0));
+                growth[lane] = gi + gj;
+            }
             spring[lane] = pls_v4_load(history + c * stride);
         }
-        pls_vd d[8], w[8], e[4], end[8], s[4];
+        pls_vd d[8], w[8], q[8], s[4];
         pls_columns8(place, d);
-        pls_columns8(turn, w);
-        pls_columns4(lead, e);
-        pls_columns8(end_turn, end);
+        pls_columns8(turn, w); // r_i w_i + r_j w_j, in the middle (0..2) and at the end (4..6)
+        pls_columns8(sum, q);  // w_i + w_j likewise
         pls_columns4(spring, s);
 
         pls_vd distance = pls_vd_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inv = one / distance;
         frame f;
         for (int a = 0; a < 3; ++a) f.n[a] = d[a] * inv, f.spring[a] = s[a];
         f.delta = d[3] - distance;
-        pls_vd half = 0.5 * f.delta, cut = inward * half, levers[3], v[3];
-        for (int a = 0; a < 3; ++a)
-        {
-            levers[a] = end[a] - cut * end[4 + a]; // l_i w_i + l_j w_j
-            v[a] = d[4 + a] + e[a];
-        }
+        pls_vd half = 0.5 * f.delta, cut = inward * half, levers[3], v[3] = {d[4] + q[3], d[5] + q[7], d[6] + d[7]};
+        for (int a = 0; a < 3; ++a) levers[a] = w[4 + a] - cut * q[4 + a]; // l_i w_i + l_j w_j
         add_cross(f.v, v, levers, f.n);
 
         // Half a step back: n, delta and levers as they were, from the relative velocity of the centres, minus d[4..6], and the growth of radii.
         pls_vd approach = d[4] * f.n[0] + d[5] * f.n[1] + d[6] * f.n[2], back = (0.5 * in->dt) * inv, middle[3], old_levers[3], u[3];
-        pls_vd old_cut = cut - inward * (0.25 * in->dt * approach + 0.5 * e[3]);
+        pls_vd old_cut = cut - inward * (0.25 * in->dt * approach + 0.5 * growth);
         for (int a = 0; a < 3; ++a)
         {
             middle[a] = f.n[a] + back * (d[4 + a] - approach * f.n[a]);
-            old_levers[a] = w[a] - old_cut * w[4 + a];
+            old_levers[a] = w[a] - old_cut * q[a];
         }
         add_cross(u, d + 4, old_levers, middle);
         pls_vd along = u[0] * middle[0] + u[1] * middle[1] + u[2] * middle[2];
         for (int a = 0; a < 3; ++a) f.u[a] = u[a] - along * middle[a];
-        f.spin = 0.5 * (w[4] * f.n[0] + w[5] * f.n[1] + w[6] * f.n[2]);
+        f.spin = 0.5 * (q[0] * f.n[0] + q[1] * f.n[1] + q[2] * f.n[2]);
         set_frame(work, k, &f, in);
         pls_vd_store(&work->lever[k], half);
         if (effective)
         {
-            pls_vd_store(&work->effective_mass[k], one / d[7]);
             for (size_t lane = k; lane < k + PLS_W; ++lane)
             {
+                work->effective_mass[lane] = 1.0 / (in->load[list->row_i[work->active[lane]]].inv_mass + in->load[list->row_j[work->active[lane]]].inv_mass);
                 double ri = in->place[list->row_i[work->active[lane]]].radius, rj = in->place[list->row_j[work->active[lane]]].radius;
                 work->effective_radius[lane] = ri * rj / (ri + rj);
             }
@@ -303,12 +311,11 @@ static wall_frame wall_of(const pls_contact_input *in, uint32_t row)
     const pls_body_place *p = &in->place[row];
     const pls_body_spin *w = &in->spin[row];
     pls_vec3 n = pls_wall_normal(&in->orientation[row], in->domain->dimension);
-    const pls_body_load *e = &in->lead[row];
     return (wall_frame){.normal = {n.x, n.y, n.z},
                         .position = {p->x, p->y, p->z},
-                        .inv_mass = p->inv_mass,
-                        .velocity = {{p->vx, p->vy, p->vz}, {p->vx + e->fx, p->vy + e->fy, p->vz + e->fz}},
-                        .spin = {{w->wx, w->wy, w->wz}, {w->wx + e->tx, w->wy + e->ty, w->wz + e->tz}}};
+                        .inv_mass = in->load[row].inv_mass,
+                        .velocity = {{p->vx, p->vy, p->vz}, {p->vx + w->lead_x, p->vy + w->lead_y, p->vz + p->lead_z}},
+                        .spin = {{w->wx, w->wy, w->wz}, {w->end_x, w->end_y, w->end_z}}};
 }
 
 static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_pair_block *block,
@@ -336,21 +343,22 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
     const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0;
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_v8 place[PLS_W], lead[PLS_W];
-        pls_v4 turn[PLS_W], spring[PLS_W];
+        pls_v8 place[PLS_W], turn[PLS_W];
+        pls_v4 spring[PLS_W];
+        pls_vd growth, inv_mass;
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = work->active[k + (size_t)lane];
             uint32_t i = list->row_i[c];
             place[lane] = pls_v8_load(&in->place[i].x);
-            lead[lane] = pls_v8_load(&in->lead[i].fx);
-            turn[lane] = pls_v4_load(&in->spin[i].wx);
+            turn[lane] = pls_v8_load(&in->spin[i].wx);
+            growth[lane] = in->before[i].growth;
+            inv_mass[lane] = in->load[i].inv_mass;
             spring[lane] = pls_v4_load(list->history + section->history + (c - section->first) * (size_t)section->stride);
         }
-        pls_vd d[8], e[8], w[4], s[4], x[3], arm[3], height = pls_vd_set(0.0);
+        pls_vd d[8], w[8], s[4], x[3], arm[3], height = pls_vd_set(0.0);
         pls_columns8(place, d);
-        pls_columns8(lead, e);
-        pls_columns4(turn, w);
+        pls_columns8(turn, w);
         pls_columns4(spring, s);
         for (int a = 0; a < 3; ++a)
         {
@@ -367,10 +375,11 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
             pls_vd_store(&work->point[a][k], arm[a]);
         }
         const double *ww = wall->spin[0], *end = wall->spin[1];
+        const pls_vd v_end[3] = {d[4] + w[3], d[5] + w[7], d[6] + d[7]};
         for (int a = 0; a < 3; ++a)
         {
             int b = (a + 1) % 3, c = (a + 2) % 3;
-            f.v[a] = d[4 + a] + e[a] + lever * ((w[b] + e[4 + b]) * f.n[c] - (w[c] + e[4 + c]) * f.n[b]) -
+            f.v[a] = v_end[a] + lever * (w[4 + b] * f.n[c] - w[4 + c] * f.n[b]) -
                      (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
         }
 
@@ -380,7 +389,7 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
             n[a] = -wall->normal[a] + 0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
         pls_vd old_x[3], old_arm[3], u[3];
         for (int a = 0; a < 3; ++a) old_x[a] = x[a] - (0.5 * in->dt) * (d[4 + a] - wall->velocity[0][a]);
-        pls_vd old_radius = d[3] - e[3];
+        pls_vd old_radius = d[3] - growth;
         pls_vd old_lever = old_radius - (0.5 * inward) * (old_radius + (n[0] * old_x[0] + n[1] * old_x[1] + n[2] * old_x[2]));
         for (int a = 0; a < 3; ++a) old_arm[a] = old_x[a] + old_lever * n[a];
         for (int a = 0; a < 3; ++a)
@@ -393,7 +402,7 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
         f.spin = 0.5 * ((w[0] + ww[0]) * f.n[0] + (w[1] + ww[1]) * f.n[1] + (w[2] + ww[2]) * f.n[2]);
         set_frame(work, k, &f, in);
         pls_vd_store(&work->lever[k], lever);
-        pls_vd_store(&work->effective_mass[k], 1.0 / (d[7] + wall->inv_mass));
+        pls_vd_store(&work->effective_mass[k], 1.0 / (inv_mass + wall->inv_mass));
         pls_vd_store(&work->effective_radius[k], d[3]);
     }
 }
@@ -502,9 +511,9 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
     for (size_t k = work->active_count; k % 8 != 0; ++k) work->active[k] = work->active[work->active_count - 1]; // padding repeats a contact
 
     if (section->wall) load_walls(list, in, section, work, &wall);
-    else if (in->domain->any_periodic) load_pairs(list, in, section, work, 1, law->ops->needs_effective);
-    else if (law->ops->needs_effective) load_pairs(list, in, section, work, 0, 1);
-    else load_pairs(list, in, section, work, 0, 0);
+    else if (in->growing || in->domain->any_periodic) load_pairs(list, in, section, work, in->domain->any_periodic, in->growing, law->ops->needs_effective);
+    else if (law->ops->needs_effective) load_pairs(list, in, section, work, 0, 0, 1);
+    else load_pairs(list, in, section, work, 0, 0, 0);
     if (kept > 0) load_law_history(list, section, work, kept);
     begin_springs(work, in);
     apply_law(law, in, work);

@@ -50,6 +50,7 @@ typedef double pls_v4 __attribute__((vector_size(32)));          ///< half a bod
 typedef int64_t pls_v4i __attribute__((vector_size(32)));
 typedef double pls_v8 __attribute__((vector_size(64)));          ///< a row of a cache line
 typedef int64_t pls_v8i __attribute__((vector_size(64)));
+typedef float pls_f8 __attribute__((vector_size(32)));            ///< a row in single precision
 
 static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
 static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }

@@ -11,29 +11,42 @@
 #include <particls/field.h>
 #include <particls/types.h>
 
-/// First cache line: all the contact loop needs of a sphere, apart from its spin.
+/// First cache line of the contact loop: where a body is and how it moves. Within a step velocities are those of its middle, which tangential springs integrate,
+/// and `lead` + them those of its end, which dashpots see (velocity_verlet_simd.c). The lead is in three places because there is room.
 typedef struct pls_body_place
 {
     double x, y, z;    ///< [m]
     double radius;     ///< bounding radius [m], infinite for unbounded bodies
-    double vx, vy, vz; ///< [m/s]; within a step the velocity of its middle
-    double inv_mass;   ///< [1/kg], 0 for bodies that no force moves
+    double vx, vy, vz; ///< [m/s]
+    double lead_z;     ///< only within a step [m/s]
 } pls_body_place;
 
+/// Second cache line: how it turns.
 typedef struct pls_body_spin
 {
-    double wx, wy, wz;  ///< [rad/s]; within a step that of its middle
-    double inv_inertia; ///< 1/I of bodies with three equal moments [1/(kg m^2)], 0 for others
+    double wx, wy, wz;          ///< [rad/s]; within a step that of its middle
+    double lead_x;              ///< only within a step [m/s]
+    double end_x, end_y, end_z; ///< only within a step: angular velocity of its end [rad/s]
+    double lead_y;              ///< only within a step [m/s]
 } pls_body_spin;
 
-/// Force and torque of one instant.
+/// Force and torque, and how the body answers them.
 typedef struct pls_body_load
 {
-    double fx, fy, fz; ///< [N]
-    double growth;     ///< 0; see pls_bodies for what it means within a step
-    double tx, ty, tz; ///< [N m]
-    double spare;      ///< keeps rows aligned
+    double fx, fy, fz;  ///< [N]
+    double inv_mass;    ///< [1/kg], 0 for bodies that no force moves
+    double tx, ty, tz;  ///< [N m]
+    double inv_inertia; ///< 1/I of bodies with three equal moments [1/(kg m^2)], 0 for others
 } pls_body_load;
+
+/// Force and torque one step earlier: they only help to predict the velocity that dashpots see, for which single precision is plenty.
+typedef struct pls_body_before
+{
+    float fx, fy, fz; ///< [N]
+    float growth;     ///< half the change of radius in this step [m]
+    float tx, ty, tz; ///< [N m]
+    float spare;      ///< keeps rows aligned
+} pls_body_before;
 
 /// What the contacts of a body have taken from motion since the start; half of each contact goes to either body.
 typedef struct pls_body_energy
@@ -80,7 +93,7 @@ enum pls_body_flags
     X(pls_body_spin, spin)                                                                                                                           \
     X(pls_body_orientation, orientation)                                                                                                             \
     X(pls_body_load, load)                                                                                                                           \
-    X(pls_body_load, load_before)                                                                                                                    \
+    X(pls_body_before, before) \
     X(pls_body_mass, mass)                                                                                                                           \
     X(pls_body_energy, energy) \
     X(double, scale)                                                                                                                                 \
@@ -98,24 +111,21 @@ enum pls_body_flags
     X("position", PLS_F64, 3, PERSISTS, "m", place, pls_body_place, x, "centre of mass")                                                             \
     X("radius", PLS_F64, 1, PERSISTS | FRAME, "m", place, pls_body_place, radius, "bounding radius")                                                 \
     X("velocity", PLS_F64, 3, PERSISTS | FRAME, "m/s", place, pls_body_place, vx, "velocity of the centre of mass")                                  \
-    X("inv_mass", PLS_F64, 1, PERSISTS, "1/kg", place, pls_body_place, inv_mass, "inverse mass, 0 where no force moves it")                          \
+    X("inv_mass", PLS_F64, 1, PERSISTS, "1/kg", load, pls_body_load, inv_mass, "inverse mass, 0 where no force moves it")                          \
     X("angular_velocity", PLS_F64, 3, PERSISTS | FRAME, "rad/s", spin, pls_body_spin, wx, "angular velocity, world frame")                           \
-    X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", spin, pls_body_spin, inv_inertia, "inverse moment of isotropic bodies")                     \
+    X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", load, pls_body_load, inv_inertia, "inverse moment of isotropic bodies")                     \
     X("orientation", PLS_F64, 4, PERSISTS | FRAME, "", orientation, pls_body_orientation, w, "unit quaternion w x y z, grain frame to world")        \
     X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                                                \
     X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                                     \
     X("energy_damped", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, damped, "half of the energy taken by its contacts' dashpots") \
     X("damping_power", PLS_F64, 1, PERSISTS, "W", energy, pls_body_energy, power, "half of the power taken by its contacts' dashpots") \
-    X("force_before", PLS_F64, 3, PERSISTS, "N", load_before, pls_body_load, fx, "force one step earlier")                                           \
-    X("torque_before", PLS_F64, 3, PERSISTS, "N m", load_before, pls_body_load, tx, "torque one step earlier")                                       \
+    X("force_before", PLS_F32, 3, PERSISTS, "N", before, pls_body_before, fx, "force one step earlier")                                           \
+    X("torque_before", PLS_F32, 3, PERSISTS, "N m", before, pls_body_before, tx, "torque one step earlier")                                       \
     X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                                         \
     X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                                            \
     X("energy_slid", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, slid, "half of the energy taken by sliding at its contacts") \
     X("scale", PLS_F64, 1, PERSISTS, "", scale, double, , "multiplies the lengths of its shape")
 
-/// Within a step, between kick and finish, `load_before` is done with and holds instead what predicts the velocities of the step's end from those of its middle:
-/// dt/4 (a(t) + a(t - dt)), [m/s] in the place of the force and [rad/s] in that of the torque; `growth` is then half the change of radius in this step [m].
-///
 /// Zero-initialise; `pls_bodies_free` releases.
 typedef struct pls_bodies
 {

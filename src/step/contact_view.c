@@ -51,7 +51,7 @@ static void fill_entry(const pls_world *world, const pls_pair_section *section, 
 
     const pls_law *law = &world->laws.law[section->law];
     const double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
-    double mass_sum = p->inv_mass + q->inv_mass;
+    double mass_sum = b->load[i].inv_mass + b->load[j].inv_mass;
     pls_contact_point point = {.delta = fmax(e->delta, 0.0),
                                .effective_radius = effective_radius,
                                .effective_mass = mass_sum > 0.0 ? 1.0 / mass_sum : INFINITY,

@@ -19,10 +19,9 @@ pls_status pls_body_forces(const pls_world *world, size_t first, size_t last, do
         const pls_body_place *p = &world->bodies.place[first + m];
         const pls_body_spin *s = &world->bodies.spin[first + m];
         const pls_body_kind *kind = &world->bodies.kind[first + m];
-        const pls_body_load *lead = &world->bodies.load_before[first + m]; // from the middle of the step to its end
         in[X][m] = p->x, in[Y][m] = p->y, in[Z][m] = p->z;
-        in[VX][m] = p->vx + lead->fx, in[VY][m] = p->vy + lead->fy, in[VZ][m] = p->vz + lead->fz;
-        in[WX][m] = s->wx + lead->tx, in[WY][m] = s->wy + lead->ty, in[WZ][m] = s->wz + lead->tz, in[MASS][m] = world->bodies.mass[first + m].mass, in[RADIUS][m] = p->radius;
+        in[VX][m] = p->vx + s->lead_x, in[VY][m] = p->vy + s->lead_y, in[VZ][m] = p->vz + p->lead_z;
+        in[WX][m] = s->end_x, in[WY][m] = s->end_y, in[WZ][m] = s->end_z, in[MASS][m] = world->bodies.mass[first + m].mass, in[RADIUS][m] = p->radius;
         body[m] = kind->number, group[m] = kind->group;
     }
     for (int k = 0; k < 6; ++k) memset(out[k], 0, n * sizeof(double));

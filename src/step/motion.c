@@ -111,7 +111,7 @@ pls_status pls_special_before(pls_world *world)
         s->velocity = pls_vec(p->vx, p->vy, p->vz);
         s->spin = pls_vec(w->wx, w->wy, w->wz);
         s->orientation = body_quat(&world->bodies, s->row);
-        s->load_before = world->bodies.load_before[s->row];
+        s->before = world->bodies.before[s->row];
     }
     return PLS_OK;
 }
@@ -145,16 +145,17 @@ static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m) {
 /// What contacts see of a body within the step (velocity_verlet_simd.c): velocity of the middle and, apart, what leads to that of the end.
 static void show_velocity(pls_bodies *b, uint32_t row, pls_vec3 middle, pls_vec3 end)
 {
-    pls_body_load *lead = &b->load_before[row];
     set_velocity(&b->place[row], middle);
-    lead->fx = end.x - middle.x, lead->fy = end.y - middle.y, lead->fz = end.z - middle.z;
+    b->spin[row].lead_x = end.x - middle.x;
+    b->spin[row].lead_y = end.y - middle.y;
+    b->place[row].lead_z = end.z - middle.z;
 }
 
 static void show_spin(pls_bodies *b, uint32_t row, pls_vec3 middle, pls_vec3 end)
 {
-    pls_body_load *lead = &b->load_before[row];
-    set_spin(&b->spin[row], middle);
-    lead->tx = end.x - middle.x, lead->ty = end.y - middle.y, lead->tz = end.z - middle.z;
+    pls_body_spin *s = &b->spin[row];
+    set_spin(s, middle);
+    s->end_x = end.x, s->end_y = end.y, s->end_z = end.z;
 }
 
 /// Angle by which one orientation is turned against another, as a vector [rad].
@@ -169,7 +170,7 @@ static pls_vec3 angle_between(pls_quat from, pls_quat to)
 static pls_vec3 sum_of_torques(const pls_bodies *b, const pls_special *s)
 {
     const pls_body_load *now = &b->load[s->row];
-    return pls_vec(now->tx + s->load_before.tx, now->ty + s->load_before.ty, now->tz + s->load_before.tz);
+    return pls_vec(now->tx + s->before.tx, now->ty + s->before.ty, now->tz + s->before.tz);
 }
 
 static void drift_anisotropic(pls_world *world, pls_special *s)
@@ -200,7 +201,7 @@ static void drift_driven_spin(pls_world *world, pls_special *s, pls_vec3 w_mid)
         return;
     }
     // Partly driven rotation of an anisotropic body: each free world axis answers with its own moment.
-    double inv = b->spin[s->row].inv_inertia, dt = world->dt;
+    double inv = b->load[s->row].inv_inertia, dt = world->dt;
     pls_vec3 torque = pls_vec(now->tx, now->ty, now->tz), sum = sum_of_torques(b, s);
     pls_vec3 accelerate = anisotropic ? spin_of(torque, s->orientation, m) : pls_scale(torque, inv);
     pls_vec3 accelerate_sum = anisotropic ? spin_of(sum, s->orientation, m) : pls_scale(sum, inv);
@@ -214,8 +215,9 @@ static pls_status drift_driven(pls_world *world, pls_special *s)
     pls_bodies *b = &world->bodies;
     const pls_motion_def *motion = motion_of(world, s->row);
     pls_body_place *p = &b->place[s->row];
-    const pls_body_load *now = &b->load[s->row], *before = &s->load_before;
-    double dt = world->dt, inv_mass = p->inv_mass;
+    const pls_body_load *now = &b->load[s->row];
+    const pls_body_before *before = &s->before;
+    double dt = world->dt, inv_mass = now->inv_mass;
     pls_vec3 v_mid, w_mid;
     PLS_TRY(driven_velocities(world, s->row, world->time + 0.5 * dt, &v_mid, &w_mid));
     PLS_TRY(driven_velocities(world, s->row, world->time + dt, &s->driven_velocity, &s->driven_spin));
@@ -267,11 +269,11 @@ void pls_special_finish(pls_world *world)
             set_spin(&b->spin[s->row], spin_of(pls_add(s->half_spin, pls_scale(torque, half)), q, m));
         else
         {
-            pls_vec3 accelerate = (flags & PLS_BODY_ANISOTROPIC) ? spin_of(torque, q, m) : pls_scale(torque, b->spin[s->row].inv_inertia);
+            pls_vec3 accelerate = (flags & PLS_BODY_ANISOTROPIC) ? spin_of(torque, q, m) : pls_scale(torque, b->load[s->row].inv_inertia);
             set_spin(&b->spin[s->row], choose(motion->axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate, half))));
         }
         if (!(flags & PLS_BODY_SPECIAL)) continue;
-        double inv_mass = b->place[s->row].inv_mass;
+        double inv_mass = load->inv_mass;
         set_velocity(&b->place[s->row], choose(motion->axes, PLS_AXIS_X, s->driven_velocity, pls_add(s->half_velocity, pls_scale(force, half * inv_mass))));
     }
 }

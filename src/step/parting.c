@@ -55,7 +55,7 @@ static struct pls_parted parted_of(const pls_world *world, const pls_pair_sectio
     const pls_law *law = &world->laws.law[section->law];
     const double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
     uint32_t i = list->row_i[c], j = list->row_j[c];
-    double ri = b->place[i].radius, rj = b->place[j].radius, inv_mass = b->place[i].inv_mass + b->place[j].inv_mass, normal, shear;
+    double ri = b->place[i].radius, rj = b->place[j].radius, inv_mass = b->load[i].inv_mass + b->load[j].inv_mass, normal, shear;
     pls_vec3 spring = pls_add(pls_vec(history[0], history[1], history[2]), pls_scale(slip_of(world, section, c), 0.5 * world->dt));
     const pls_contact_point point = {.delta = 0.0,
                                      .effective_radius = section->wall ? ri : ri * rj / (ri + rj),

@@ -69,7 +69,7 @@ static pls_status drive_scale(pls_world *world, const pls_state_instance *state)
     double unit = world->shape[world->bodies.kind[row].shape].radius;
     pls_status status = pls_body_rescale(world, row, state->def.target == PLS_STATE_RADIUS ? value / unit : value, state->def.keep_density);
     if (status != PLS_OK) return pls_fail_context(status, "state '%s': ", state->def.name);
-    if (world->prepared) world->bodies.load_before[row].growth = 0.5 * (world->bodies.place[row].radius - before); // springs take the levers of mid-step
+    if (world->prepared) world->bodies.before[row].growth = (float)(0.5 * (world->bodies.place[row].radius - before)); // springs take the levers of mid-step
     world->list.drift += 2.0 * fmax(0.0, world->bodies.place[row].radius - before);
     return PLS_OK;
 }

@@ -27,10 +27,12 @@ static void find_contacts_and_forces(pls_world *world, double dt)
     pls_pair_list *list = &world->list;
     const pls_contact_input input = {.place = world->bodies.place,
                                      .spin = world->bodies.spin,
-                                     .lead = world->bodies.load_before,
+                                     .load = world->bodies.load,
+                                     .before = world->bodies.before,
                                      .orientation = world->bodies.orientation,
                                      .domain = &world->domain,
                                      .laws = &world->laws,
+                                     .growing = world->state_count > 0,
                                      .dt = dt};
 #pragma omp parallel for schedule(static)
     for (size_t b = 0; b < list->block_count; ++b)
@@ -90,9 +92,7 @@ static pls_status begin_bodies(pls_world *world)
 /// are in the cache.
 static pls_status finish_bodies(pls_world *world, double dt, double time, bool go_on)
 {
-    pls_bodies *bodies = &world->bodies, next = *bodies;
-    next.load = bodies->load_before; // where the new loads go
-    next.load_before = bodies->load;
+    pls_bodies *bodies = &world->bodies;
     pls_drift_report total = {0.0, 0.0};
     pls_status worst = PLS_OK;
     char message[512] = "";
@@ -104,7 +104,7 @@ static pls_status finish_bodies(pls_world *world, double dt, double time, bool g
         {
             size_t first = b * BODY_BLOCK, last = pls_block_end(b, BODY_BLOCK, bodies->count);
             pls_status status = finish_block(world, first, last, dt, time);
-            if (status == PLS_OK && go_on) begin_block(&next, first, last, dt, &part);
+            if (status == PLS_OK && go_on) begin_block(bodies, first, last, dt, &part);
             if (status == PLS_OK) continue;
 #pragma omp critical(pls_finish_failure)
             {
@@ -115,8 +115,6 @@ static pls_status finish_bodies(pls_world *world, double dt, double time, bool g
         join_report(&total, &part);
     }
     if (worst != PLS_OK) return pls_fail(worst, "%s", message);
-    bodies->load = next.load;
-    bodies->load_before = next.load_before;
     return go_on ? judge_drift(world, &total) : PLS_OK;
 }
 
@@ -219,6 +217,27 @@ pls_status pls_world_resume(pls_world *world)
     return PLS_OK;
 }
 
+/// Velocities of the end of a step that takes no time are those of now.
+static void stand_still(pls_bodies *b)
+{
+    for (size_t row = 0; row < b->count; ++row)
+    {
+        pls_body_spin *s = &b->spin[row];
+        s->lead_x = s->lead_y = b->place[row].lead_z = 0.0;
+        s->end_x = s->wx, s->end_y = s->wy, s->end_z = s->wz;
+    }
+}
+
+/// Before the start forces were as at the start.
+static void remember_loads(pls_bodies *b)
+{
+    for (size_t row = 0; row < b->count; ++row)
+    {
+        const pls_body_load *l = &b->load[row];
+        b->before[row] = (pls_body_before){(float)l->fx, (float)l->fy, (float)l->fz, 0.0f, (float)l->tx, (float)l->ty, (float)l->tz, 0.0f};
+    }
+}
+
 pls_status pls_world_prepare(pls_world *world)
 {
     if (world->prepared) return world->work_count >= pls_threads() ? PLS_OK : reserve_work(world);
@@ -229,10 +248,11 @@ pls_status pls_world_prepare(pls_world *world)
     PLS_TRY(pls_special_start(world));
     PLS_TRY(pls_neighbours_refresh(world));
     PLS_TRY(pls_choose_step(world));
+    stand_still(&world->bodies);
     find_contacts_and_forces(world, 0.0);
     PLS_TRY(pls_guard_overlap(world));
     PLS_TRY(finish_bodies(world, 0.0, world->time, false));
-    memcpy(world->bodies.load_before, world->bodies.load, world->bodies.count * sizeof *world->bodies.load); // before the start, as at the start
+    remember_loads(&world->bodies);
     world->prepared = true;
     return pls_guard_finite(world);
 }

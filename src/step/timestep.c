@@ -98,10 +98,10 @@ static joint joint_of(const pls_world *world, size_t c)
         t.lever_j = q->radius - 0.5 * delta;
     }
     t.lever_i = p->radius - 0.5 * delta;
-    t.held = section->wall || q->inv_mass == 0.0;
+    t.held = section->wall || b->load[t.j].inv_mass == 0.0;
     const pls_law *law = &world->laws.law[section->law];
     const double zeros[PLS_LAW_MAX_HISTORY] = {0};
-    pls_contact_point point = {.delta = fmax(delta, 0.0), .effective_radius = radius, .effective_mass = 1.0 / (p->inv_mass + q->inv_mass), .history = zeros};
+    pls_contact_point point = {.delta = fmax(delta, 0.0), .effective_radius = radius, .effective_mass = 1.0 / (b->load[t.i].inv_mass + b->load[t.j].inv_mass), .history = zeros};
     law->ops->stiffness(law->constants, &point, &t.k);
     return t;
 }
@@ -113,7 +113,7 @@ static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, 
     joint t = joint_of(world, entry >> 1);
     uint32_t other = row == t.i ? t.j : t.i;
     double m = b->mass[row].mass;
-    double ratio = b->place[other].inv_mass > 0.0 ? fmin(fmax(m / b->mass[other].mass, 1.0 / 3.0), 3.0) : 0.0;
+    double ratio = b->load[other].inv_mass > 0.0 ? fmin(fmax(m / b->mass[other].mass, 1.0 / 3.0), 3.0) : 0.0;
     double root_mass = 1.0 / sqrt(m), root_inertia = 1.0 / sqrt(smallest_moment(&b->mass[row], world->def.dimension));
     double lever = row == t.i ? t.lever_i : t.lever_j, weight = 1.0 + ratio;
     add_contact(rates->stiffness, world->def.dimension, t.n, lever, root_mass, root_inertia, weight * t.k.kn, weight * t.k.kt);
@@ -189,7 +189,7 @@ static void estimate(const pls_world *world, int coordination, pls_step_estimate
     for (uint32_t number = 0; number < b->numbers; ++number)
     {
         uint32_t row = b->row_of[number];
-        if (row == PLS_NO_ROW || b->place[row].inv_mass == 0.0) continue;
+        if (row == PLS_NO_ROW || b->load[row].inv_mass == 0.0) continue;
         body_rates rates = rates_of(world, row, coordination);
         if (stable_dt(trace(rates.stiffness), trace(rates.damping)) >= best->dt) continue; // the trace bounds the largest eigenvalue
         double stiffness = pls_largest_eigenvalue(rates.stiffness, 6), damping = pls_largest_eigenvalue(rates.damping, 6);
@@ -239,7 +239,7 @@ static pls_status whole_make(const pls_world *world, int coordination, whole *w)
         if (pls_pair_touches(list, c)) w->joint[w->joints++] = joint_of(world, c);
     for (uint32_t row = 0; row < w->rows; ++row)
     {
-        if (b->place[row].inv_mass == 0.0) continue;
+        if (b->load[row].inv_mass == 0.0) continue;
         w->root_mass[row] = 1.0 / sqrt(b->mass[row].mass);
         w->root_inertia[row] = 1.0 / sqrt(smallest_moment(&b->mass[row], world->def.dimension));
         body_rates with = rates_of(world, row, coordination), without = rates_of(world, row, 0);

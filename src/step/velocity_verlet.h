@@ -12,11 +12,11 @@ typedef struct pls_drift_report
     double poison;         ///< 0, or NaN when a position or velocity is not finite
 } pls_drift_report;
 
-/// Half kick, drift, and the velocities that laws will see, for rows first .. last.
+/// Half kick, drift, and the lead of velocities that laws will see, for rows first .. last.
 PLS_SIMD_DECLARE(void, pls_verlet_begin, pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report);
 
 /// Forces of contacts gathered in order of partner numbers, added to the given body forces (arrays of 4 per row of the block, or null); second half kick; dissipation booked;
-/// for rows first .. last. The new load is written to `load_before`; the caller then swaps the two columns.
+/// for rows first .. last.
 PLS_SIMD_DECLARE(void, pls_verlet_finish, pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
                  const double *torque);
 

@@ -1,9 +1,9 @@
 // velocity_verlet_simd.c -- velocity Verlet for bodies (P1 section 4.2.2), one body at a time, a row of four numbers per instruction.
 //
-//     begin    u = v + dt/2 a(t)        x += dt u        q <- rotation by dt u_w        e = dt/4 (a(t) + a(t - dt))
+//     begin    u = v + dt/2 a(t)        x += dt u        q <- rotation by dt u_w        lead = dt/4 (a(t) + a(t - dt))
 //     finish   a = F/m                  v = u + dt/2 a
 //
-// In between rows hold u, the velocity of the middle of the step: what tangential springs integrate. Dashpots and body forces see the velocity of the end, u + e.
+// In between rows hold u, the velocity of the middle of the step: what tangential springs integrate. Dashpots and body forces see the velocity of the end, u + lead.
 // Second order needs an estimate of the acceleration there; the last one alone would do, but halves the step at which dashpots stay stable. The mean of the last two
 // keeps the order and has the limit of the plain leapfrog, (2/w)(sqrt(1 + z^2) - z), for all damping ratios z (docs/theory.md).
 //
@@ -34,20 +34,23 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
         pls_body_place *p = &bodies->place[row];
         pls_body_spin *s = &bodies->spin[row];
         const pls_body_load *now = &bodies->load[row];
-        pls_body_load *before = &bodies->load_before[row];
+        pls_f8 *before = (pls_f8 *)&bodies->before[row];
         pls_v4 x = pls_v4_load(&p->x), v = pls_v4_load(&p->vx), w = pls_v4_load(&s->wx);
         pls_v4 f = pls_v4_load(&now->fx), t = pls_v4_load(&now->tx);
-        pls_v4 a = only_first_three(f * p->inv_mass), b = only_first_three(t * s->inv_inertia);
-        pls_v4 a_before = only_first_three(pls_v4_load(&before->fx) * p->inv_mass);
-        pls_v4 b_before = only_first_three(pls_v4_load(&before->tx) * s->inv_inertia);
+        pls_v8 old = __builtin_convertvector(*before, pls_v8);
+        pls_v4 a = only_first_three(f * now->inv_mass), b = only_first_three(t * now->inv_inertia);
+        pls_v4 a_last = only_first_three(pls_v8_low(old) * now->inv_mass), b_last = only_first_three(pls_v8_high(old) * now->inv_inertia);
+        *before = __builtin_convertvector(pls_v8_join(only_first_three(f), only_first_three(t)), pls_f8);
 
         pls_v4 u = v + half * a, uw = w + half * b;
-        pls_v4 step = only_first_three(dt * u);
+        pls_v4 step = only_first_three(dt * u), lead = quarter * (a + a_last), end = uw + quarter * (b + b_last);
+        u[3] = lead[2];
+        uw[3] = lead[0];
+        end[3] = lead[1];
         pls_v4_store(&p->x, x + step);
         pls_v4_store(&p->vx, u);
         pls_v4_store(&s->wx, uw);
-        pls_v4_store(&before->fx, quarter * (a + a_before));
-        pls_v4_store(&before->tx, quarter * (b + b_before));
+        pls_v4_store(&s->end_x, end);
         turn(&bodies->orientation[row], uw, half);
 
         pls_v4 square = step * step;
@@ -121,11 +124,13 @@ static inline void finish_row(pls_bodies *bodies, size_t row, double dt, const g
     const double half = 0.5 * dt;
     pls_body_place *p = &bodies->place[row];
     pls_body_spin *s = &bodies->spin[row];
-    pls_body_load *load = &bodies->load_before[row];
+    pls_body_load *load = &bodies->load[row];
     pls_body_energy *energy = &bodies->energy[row];
     pls_v4 f = only_first_three(g->force), t = only_first_three(g->torque);
-    pls_v4_store(&p->vx, pls_v4_load(&p->vx) + half * (f * p->inv_mass));
-    pls_v4_store(&s->wx, pls_v4_load(&s->wx) + half * (t * s->inv_inertia));
+    pls_v4_store(&p->vx, pls_v4_load(&p->vx) + half * (f * load->inv_mass));
+    pls_v4_store(&s->wx, pls_v4_load(&s->wx) + half * (t * load->inv_inertia));
+    f[3] = load->inv_mass;
+    t[3] = load->inv_inertia;
     pls_v4_store(&load->fx, f);
     pls_v4_store(&load->tx, t);
 

@@ -466,8 +466,9 @@ static pls_status add_body(pls_world *world, const pls_body_def *def, pls_body_i
     const pls_shape_instance *shape = &world->shape[def->shape.index1 - 1];
     double inv_mass = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED)) ? 0.0 : 1.0 / mass.mass;
     double inv_inertia = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED | PLS_BODY_ANISOTROPIC)) ? 0.0 : 1.0 / mass.iz;
-    bodies->place[row] = (pls_body_place){def->position.x, def->position.y, def->position.z, shape->radius * def->scale, v.x, v.y, v.z, inv_mass};
-    bodies->spin[row] = (pls_body_spin){w.x, w.y, w.z, inv_inertia};
+    bodies->place[row] = (pls_body_place){def->position.x, def->position.y, def->position.z, shape->radius * def->scale, v.x, v.y, v.z, 0.0};
+    bodies->load[row] = (pls_body_load){.inv_mass = inv_mass, .inv_inertia = inv_inertia};
+    bodies->spin[row] = (pls_body_spin){.wx = w.x, .wy = w.y, .wz = w.z};
     pls_quat q = pls_quat_unit(def->orientation);
     bodies->orientation[row] = (pls_body_orientation){q.w, q.x, q.y, q.z};
     bodies->mass[row] = mass;
@@ -535,8 +536,8 @@ pls_status pls_body_rescale(pls_world *world, uint32_t row, double scale, bool k
     mass->ix *= inertia_ratio;
     mass->iy *= inertia_ratio;
     mass->iz *= inertia_ratio;
-    if (bodies->place[row].inv_mass != 0.0) bodies->place[row].inv_mass = 1.0 / mass->mass;
-    if (bodies->spin[row].inv_inertia != 0.0) bodies->spin[row].inv_inertia = 1.0 / mass->iz;
+    if (bodies->load[row].inv_mass != 0.0) bodies->load[row].inv_mass = 1.0 / mass->mass;
+    if (bodies->load[row].inv_inertia != 0.0) bodies->load[row].inv_inertia = 1.0 / mass->iz;
     return PLS_OK;
 }
 

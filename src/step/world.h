@@ -50,7 +50,7 @@ typedef struct pls_special
     uint32_t row;
     pls_vec3 position, velocity, spin; ///< at the start of the step
     pls_quat orientation;
-    pls_body_load load_before;
+    pls_body_before before;
     pls_vec3 half_velocity; ///< u of velocity_verlet_simd.c
     pls_vec3 half_spin;     ///< the same of rotation; for anisotropic bodies the angular momentum
     pls_vec3 driven_velocity, driven_spin; ///< at the end of the step
