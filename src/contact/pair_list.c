@@ -79,7 +79,7 @@ static pls_status add_section(pls_pair_list *list, const pls_law_table *laws, ui
 {
     PLS_TRY(pls_reserve(&list->section, &list->section_capacity, list->section_count + 1, sizeof *list->section, "sections of the pair list"));
     pls_pair_section *section = &list->section[list->section_count++];
-    *section = (pls_pair_section){.wall = wall, .wall_row = wall_row, .law = law, .first = list->count, .count = count};
+    *section = (pls_pair_section){.wall = wall, .wall_row = wall_row, .law = law, .depth = INFINITY, .first = list->count, .count = count};
     section->stride = laws->law[law].ops->history > 1 ? 2 * PLS_SPRING_STRIDE : PLS_SPRING_STRIDE;
     list->count += (count + 7) / 8 * 8;
     list->listed += count;
@@ -278,7 +278,7 @@ static uint32_t partner_number(const pls_pair_list *list, const pls_bodies *bodi
 static pls_status gather_rows(pls_gather_rows *rows, const pls_pair_list *list, const pls_bodies *bodies, bool walls)
 {
     size_t entries = 0;
-    PLS_TRY(pls_reserve(&rows->start, &rows->start_capacity, bodies->count + 2, sizeof *rows->start, "gather rows"));
+    PLS_TRY(pls_reserve(&rows->start, &rows->start_capacity, bodies->count + 2 + PLS_ROW_REACH, sizeof *rows->start, "gather rows"));
     memset(rows->start, 0, (bodies->count + 2) * sizeof *rows->start);
     for (size_t s = 0; s < list->section_count; ++s)
     {
@@ -303,6 +303,7 @@ static pls_status gather_rows(pls_gather_rows *rows, const pls_pair_list *list, 
             rows->entry[rows->start[list->row_j[c] + 1]++] = (uint32_t)(2 * c + 1);
         }
     }
+    for (size_t row = bodies->count + 1; row < bodies->count + 2 + PLS_ROW_REACH; ++row) rows->start[row] = rows->start[bodies->count];
     pls_status worst = PLS_OK;
 #pragma omp parallel for schedule(dynamic, 256)
     for (size_t row = 0; row < bodies->count; ++row)
@@ -361,7 +362,7 @@ static pls_status keep_reference(pls_pair_list *list, const pls_bodies *bodies)
 /// Nothing is known of which entries touch: every row is stale.
 static pls_status forget_touching_entries(pls_pair_list *list, size_t rows)
 {
-    PLS_TRY(renew(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + 1, sizeof *list->near_entry, "touching entries"));
+    PLS_TRY(renew(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + PLS_ROW_REACH, sizeof *list->near_entry, "touching entries"));
     size_t capacity = list->near_capacity;
     PLS_TRY(pls_reserve(&list->near_count, &capacity, rows, sizeof *list->near_count, "touching entries"));
     capacity = list->near_capacity;

@@ -17,6 +17,8 @@ enum
 {
     PLS_CONTACT_BLOCK = PLS_LAW_BATCH, ///< candidates per block of work: its arrays stay in the first-level cache
     PLS_PAIR_REACH = 64,               ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
+    PLS_ROW_REACH = 16,                ///< gather rows behind the last body, and entries behind the last one, for loops that fetch ahead
+    PLS_LARGE_WORLD = 20000,           ///< bodies from which rows and contacts overflow the near caches, so that fetching ahead pays
     PLS_SLOT = 8,            ///< doubles in the slot of a sphere pair: F (3), delta/2, n x Ft (3), booked power and work
     PLS_WALL_SLOT = 16,      ///< doubles in the slot of a wall pair: F (3), power, torque on i (3), work, torque on the wall (3), spare
     PLS_SPRING_STRIDE = 4    ///< doubles of history when the law keeps at most one number besides the spring; twice that otherwise
@@ -27,6 +29,7 @@ typedef struct pls_pair_section
     bool wall;       ///< body i against the half-space `wall_row`
     uint32_t wall_row;
     uint16_t law;    ///< index in the law table
+    double depth;    ///< of the half-space: it lets go of bodies whose centre is further behind its surface [m]
     int stride;      ///< doubles of history per candidate
     size_t first;    ///< first candidate, a multiple of 8
     size_t count;    ///< candidates

@@ -8,6 +8,13 @@
 /// Arrays of one block of work, filled by the geometry, worked on by the law, read when forces are stored. One per thread.
 typedef struct pls_contact_work
 {
+    // of sphere pairs: columns loaded from the rows of both bodies
+    _Alignas(64) double velocity[3][PLS_CONTACT_BLOCK];                                   ///< of i less j, mid-step [m/s]
+    _Alignas(64) double lead[3][PLS_CONTACT_BLOCK];                                       ///< what leads to that of the end [m/s]
+    _Alignas(64) double turn[3][PLS_CONTACT_BLOCK], turn_end[3][PLS_CONTACT_BLOCK];       ///< r_i w_i + r_j w_j, mid-step and end [m/s]
+    _Alignas(64) double sum[3][PLS_CONTACT_BLOCK], sum_end[3][PLS_CONTACT_BLOCK];         ///< w_i + w_j [rad/s]
+    _Alignas(64) double inv_distance[PLS_CONTACT_BLOCK], growth[PLS_CONTACT_BLOCK];       ///< of the centres [1/m]; of both radii in half a step [m]
+    // of all pairs
     _Alignas(64) double normal[3][PLS_CONTACT_BLOCK]; ///< from i to j
     _Alignas(64) double delta[PLS_CONTACT_BLOCK];     ///< overlap [m]
     _Alignas(64) double lever[PLS_CONTACT_BLOCK];     ///< sphere pairs: delta/2; walls: distance of the contact point from the centre of i [m]
@@ -38,6 +45,7 @@ typedef struct pls_contact_input
     const pls_body_orientation *orientation;
     const pls_domain *domain;
     const pls_law_table *laws;
+    bool large;   ///< bodies and contacts do not fit the near caches: fetch ahead
     bool growing; ///< radii may have changed in this step
     double dt;    ///< [s]; 0 at the start of a run: no time has passed, springs and dissipation stay
 } pls_contact_input;

@@ -75,15 +75,24 @@ static inline void note_touching(pls_pair_list *list, const pls_pair_section *se
     work->active_count += (size_t)__builtin_popcount(now);
 }
 
-/// Fetch what the touching candidates will need into the cache while the filter's end and the first loads run.
-static inline void fetch_ahead(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_contact_work *work)
+/// Fetch into the cache what the next block will need of the candidates that touched at the last step; nearly all of them still do.
+static inline void fetch_ahead(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_block *block)
 {
-    for (size_t k = 0; k < work->active_count; ++k)
+    if (block == list->block + list->block_count) return;
+    const pls_pair_section *section = &list->section[block->section];
+    const size_t stride = (size_t)section->stride;
+    const double *history = list->history + section->history - section->first * stride;
+    for (size_t c = block->first; c < block->first + block->count; c += 8)
     {
-        size_t c = work->active[k];
-        __builtin_prefetch(list->history + section->history + (c - section->first) * (size_t)section->stride, 1);
-        __builtin_prefetch(section->wall ? pls_wall_slot(list, c) : list->slot + c * PLS_SLOT, 1);
-        __builtin_prefetch(&in->spin[list->row_j[c]]);
+        unsigned touching = list->touch[c >> 3];
+        const uint8_t *lane = pls_packed_lanes[touching];
+        for (int k = __builtin_popcount(touching) - 1; k >= 0; --k)
+        {
+            size_t m = c + lane[k];
+            __builtin_prefetch(history + m * stride, 1);
+            __builtin_prefetch(section->wall ? pls_wall_slot(list, m) : list->slot + m * PLS_SLOT, 1);
+            __builtin_prefetch(&in->spin[list->row_j[m]]);
+        }
     }
 }
 
@@ -100,7 +109,7 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
     {
         size_t c = block->first + k;
         unsigned now = 0;
-        for (int lane = 0; lane < 8; ++lane) __builtin_prefetch(&in->place[list->row_j[c + FETCH_AHEAD + (size_t)lane]]);
+        for (int lane = 0; in->large && lane < 8; ++lane) __builtin_prefetch(&in->place[list->row_j[c + FETCH_AHEAD + (size_t)lane]]);
         for (int half = 0; half < 8; half += PLS_W)
         {
             pls_v4 row[PLS_W];
@@ -177,13 +186,12 @@ static inline void add_cross(pls_vd out[3], const pls_vd v[3], const pls_vd w[3]
     out[2] = v[2] + (w[0] * n[1] - w[1] * n[0]);
 }
 
+/// Rows of both bodies to columns over contacts, normals and overlaps.
 static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
-                                                             pls_contact_work *work, int periodic, int growing, int effective)
+                                                             pls_contact_work *work, int periodic, int growing)
 {
-    const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0; // is the overlap's half taken off the levers of velocities?
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
     const pls_v4 edge_rate = {in->domain->edge_rate[0], in->domain->edge_rate[1], in->domain->edge_rate[2], 0.0};
-    const pls_vd one = pls_vd_set(1.0);
     const size_t stride = (size_t)section->stride;
     const double *history = list->history + section->history - section->first * stride; // of candidate 0
     for (size_t k = 0; k < work->active_count; k += PLS_W)
@@ -213,40 +221,75 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
         pls_vd d[8], w[8], q[8], s[4];
         pls_columns8(place, d);
         pls_columns8(turn, w); // r_i w_i + r_j w_j, in the middle (0..2) and at the end (4..6)
-        pls_columns8(sum, q);  // w_i + w_j likewise
+        pls_columns8(sum, q);  // w_i + w_j likewise, the lead in 3 and 7
         pls_columns4(spring, s);
-
-        pls_vd distance = pls_vd_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inv = one / distance;
-        frame f;
-        for (int a = 0; a < 3; ++a) f.n[a] = d[a] * inv, f.spring[a] = s[a];
-        f.delta = d[3] - distance;
-        pls_vd half = 0.5 * f.delta, cut = inward * half, levers[3], v[3] = {d[4] + q[3], d[5] + q[7], d[6] + d[7]};
-        for (int a = 0; a < 3; ++a) levers[a] = w[4 + a] - cut * q[4 + a]; // l_i w_i + l_j w_j
-        add_cross(f.v, v, levers, f.n);
-
-        // Half a step back: n, delta and levers as they were, from the relative velocity of the centres, minus d[4..6], and the growth of radii.
-        pls_vd approach = d[4] * f.n[0] + d[5] * f.n[1] + d[6] * f.n[2], back = (0.5 * in->dt) * inv, middle[3], old_levers[3], u[3];
-        pls_vd old_cut = cut - inward * (0.25 * in->dt * approach + 0.5 * growth);
+        pls_vd distance = pls_vd_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inv = 1.0 / distance;
         for (int a = 0; a < 3; ++a)
         {
-            middle[a] = f.n[a] + back * (d[4 + a] - approach * f.n[a]);
-            old_levers[a] = w[a] - old_cut * q[a];
+            pls_vd_store(&work->normal[a][k], d[a] * inv);
+            pls_vd_store(&work->velocity[a][k], d[4 + a]);
+            pls_vd_store(&work->turn[a][k], w[a]);
+            pls_vd_store(&work->turn_end[a][k], w[4 + a]);
+            pls_vd_store(&work->sum[a][k], q[a]);
+            pls_vd_store(&work->sum_end[a][k], q[4 + a]);
+            pls_vd_store(&work->spring[a][k], s[a]);
         }
-        add_cross(u, d + 4, old_levers, middle);
+        pls_vd_store(&work->lead[0][k], q[3]);
+        pls_vd_store(&work->lead[1][k], q[7]);
+        pls_vd_store(&work->lead[2][k], d[7]);
+        pls_vd_store(&work->delta[k], d[3] - distance);
+        pls_vd_store(&work->inv_distance[k], inv);
+        if (growing) pls_vd_store(&work->growth[k], growth);
+    }
+}
+
+/// Contact frames of the loaded pairs. Apart from loading, so that the long chains of one vector overlap with those of the next.
+static inline __attribute__((always_inline)) void frame_pairs(const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, int growing)
+{
+    const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0; // is the overlap's half taken off the levers of velocities?
+    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    {
+        frame f;
+        pls_vd rate[3], end[3], levers[3], sum[3];
+        f.delta = pls_vd_load(&work->delta[k]);
+        pls_vd half = 0.5 * f.delta, cut = inward * half;
+        for (int a = 0; a < 3; ++a)
+        {
+            f.n[a] = pls_vd_load(&work->normal[a][k]);
+            f.spring[a] = pls_vd_load(&work->spring[a][k]);
+            rate[a] = pls_vd_load(&work->velocity[a][k]);
+            sum[a] = pls_vd_load(&work->sum[a][k]);
+            end[a] = rate[a] + pls_vd_load(&work->lead[a][k]);
+            levers[a] = pls_vd_load(&work->turn_end[a][k]) - cut * pls_vd_load(&work->sum_end[a][k]); // l_i w_i + l_j w_j
+        }
+        add_cross(f.v, end, levers, f.n);
+
+        // Half a step back: n, delta and levers as they were, from the relative velocity of the centres (minus `rate`) and the growth of radii.
+        pls_vd approach = rate[0] * f.n[0] + rate[1] * f.n[1] + rate[2] * f.n[2], back = (0.5 * in->dt) * pls_vd_load(&work->inv_distance[k]);
+        pls_vd grown = growing ? 0.5 * pls_vd_load(&work->growth[k]) : pls_vd_set(0.0), middle[3], old_levers[3], u[3];
+        pls_vd old_cut = cut - inward * (0.25 * in->dt * approach + grown);
+        for (int a = 0; a < 3; ++a)
+        {
+            middle[a] = f.n[a] + back * (rate[a] - approach * f.n[a]);
+            old_levers[a] = pls_vd_load(&work->turn[a][k]) - old_cut * sum[a];
+        }
+        add_cross(u, rate, old_levers, middle);
         pls_vd along = u[0] * middle[0] + u[1] * middle[1] + u[2] * middle[2];
         for (int a = 0; a < 3; ++a) f.u[a] = u[a] - along * middle[a];
-        f.spin = 0.5 * (q[0] * f.n[0] + q[1] * f.n[1] + q[2] * f.n[2]);
+        f.spin = 0.5 * (sum[0] * f.n[0] + sum[1] * f.n[1] + sum[2] * f.n[2]);
         set_frame(work, k, &f, in);
         pls_vd_store(&work->lever[k], half);
-        if (effective)
-        {
-            for (size_t lane = k; lane < k + PLS_W; ++lane)
-            {
-                work->effective_mass[lane] = 1.0 / (in->load[list->row_i[work->active[lane]]].inv_mass + in->load[list->row_j[work->active[lane]]].inv_mass);
-                double ri = in->place[list->row_i[work->active[lane]]].radius, rj = in->place[list->row_j[work->active[lane]]].radius;
-                work->effective_radius[lane] = ri * rj / (ri + rj);
-            }
-        }
+    }
+}
+
+static void load_effective(const pls_pair_list *list, const pls_contact_input *in, pls_contact_work *work)
+{
+    for (size_t k = 0; k < (work->active_count + 7) / 8 * 8; ++k)
+    {
+        uint32_t i = list->row_i[work->active[k]], j = list->row_j[work->active[k]];
+        double ri = in->place[i].radius, rj = in->place[j].radius;
+        work->effective_mass[k] = 1.0 / (in->load[i].inv_mass + in->load[j].inv_mass);
+        work->effective_radius[k] = ri * rj / (ri + rj);
     }
 }
 
@@ -321,6 +364,7 @@ static wall_frame wall_of(const pls_contact_input *in, uint32_t row)
 static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_pair_block *block,
                          pls_contact_work *work, const wall_frame *wall)
 {
+    const double behind = -section->depth;
     for (size_t k = 0; k < block->count; k += 8)
     {
         size_t c = block->first + k;
@@ -332,7 +376,7 @@ static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const
             pls_vd d[4];
             pls_columns4(row, d);
             pls_vd height = wall->normal[0] * (d[0] - wall->position[0]) + wall->normal[1] * (d[1] - wall->position[1]) + wall->normal[2] * (d[2] - wall->position[2]);
-            now |= pls_vd_less(height, d[3]) << half;
+            now |= (pls_vd_less(height, d[3]) & pls_vd_less(pls_vd_set(behind), height)) << half;
         }
         note_touching(list, section, c, now & valid_lanes(block, k), work);
     }
@@ -499,6 +543,7 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
     int kept = law->ops->history;
     wall_frame wall = {0};
     work->active_count = work->fresh_count = 0;
+    if (in->large) fetch_ahead(list, in, block + 1);
     if (section->wall)
     {
         wall = wall_of(in, section->wall_row);
@@ -507,13 +552,18 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
     else if (in->domain->any_periodic) filter_pairs(list, in, section, block, work, 1);
     else filter_pairs(list, in, section, block, work, 0);
     if (work->active_count == 0) return;
-    fetch_ahead(list, in, section, work);
     for (size_t k = work->active_count; k % 8 != 0; ++k) work->active[k] = work->active[work->active_count - 1]; // padding repeats a contact
 
     if (section->wall) load_walls(list, in, section, work, &wall);
-    else if (in->growing || in->domain->any_periodic) load_pairs(list, in, section, work, in->domain->any_periodic, in->growing, law->ops->needs_effective);
-    else if (law->ops->needs_effective) load_pairs(list, in, section, work, 0, 0, 1);
-    else load_pairs(list, in, section, work, 0, 0, 0);
+    else
+    {
+        if (in->domain->any_periodic) load_pairs(list, in, section, work, 1, in->growing);
+        else if (in->growing) load_pairs(list, in, section, work, 0, 1);
+        else load_pairs(list, in, section, work, 0, 0);
+        if (in->growing) frame_pairs(in, section, work, 1);
+        else frame_pairs(in, section, work, 0);
+        if (law->ops->needs_effective) load_effective(list, in, work);
+    }
     if (kept > 0) load_law_history(list, section, work, kept);
     begin_springs(work, in);
     apply_law(law, in, work);

@@ -50,6 +50,8 @@ typedef double pls_v4 __attribute__((vector_size(32)));          ///< half a bod
 typedef int64_t pls_v4i __attribute__((vector_size(32)));
 typedef double pls_v8 __attribute__((vector_size(64)));          ///< a row of a cache line
 typedef int64_t pls_v8i __attribute__((vector_size(64)));
+typedef double pls_v2 __attribute__((vector_size(16)));
+typedef float pls_f2 __attribute__((vector_size(8)));
 typedef float pls_f8 __attribute__((vector_size(32)));            ///< a row in single precision
 
 static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
@@ -99,7 +101,7 @@ static inline unsigned pls_vd_less(pls_vd a, pls_vd b)
 // Transposes. Rows are eight (or four) doubles in memory, one per contact; columns are vectors over PLS_W contacts.
 
 #if PLS_W == 8
-static inline void pls_transpose8_(pls_vd r[8])
+static inline __attribute__((always_inline)) void pls_transpose8_(pls_vd r[8])
 {
     pls_vd a[8], b[8];
     for (int k = 0; k < 4; ++k)
@@ -133,7 +135,7 @@ static inline void pls_transpose4_(pls_v4 r[4])
 }
 
 /// PLS_W rows of four (in registers) to four columns.
-static inline void pls_columns4(const pls_v4 *row, pls_vd column[4])
+static inline __attribute__((always_inline)) void pls_columns4(const pls_v4 *row, pls_vd column[4])
 {
 #if PLS_W == 8
     pls_vd p[4];
@@ -154,7 +156,7 @@ static inline void pls_columns4(const pls_v4 *row, pls_vd column[4])
 }
 
 /// Four columns to PLS_W rows of four, row k stored at `row[k]` for k < count.
-static inline void pls_rows4(const pls_vd column[4], double *const *row, int count)
+static inline __attribute__((always_inline)) void pls_rows4(const pls_vd column[4], double *const *row, int count)
 {
 #if PLS_W == 8
     pls_vd a = __builtin_shufflevector(column[0], column[1], 0, 8, 2, 10, 4, 12, 6, 14);
@@ -185,7 +187,7 @@ static inline void pls_rows4(const pls_vd column[4], double *const *row, int cou
 }
 
 /// PLS_W rows of eight to eight columns.
-static inline void pls_columns8(const pls_v8 *row, pls_vd column[8])
+static inline __attribute__((always_inline)) void pls_columns8(const pls_v8 *row, pls_vd column[8])
 {
 #if PLS_W == 8
     for (int k = 0; k < 8; ++k) column[k] = row[k];
@@ -199,7 +201,7 @@ static inline void pls_columns8(const pls_v8 *row, pls_vd column[8])
 }
 
 /// Eight columns to PLS_W rows of eight, row k stored at `row[k]` for k < count.
-static inline void pls_rows8(const pls_vd column[8], double *const *row, int count)
+static inline __attribute__((always_inline)) void pls_rows8(const pls_vd column[8], double *const *row, int count)
 {
 #if PLS_W == 8
     pls_vd t[8];

@@ -2,7 +2,15 @@
 
 #include "shape/builtin.h"
 
-static const pls_parameter parameters[] = {{.name = NULL}};
+static const pls_parameter parameters[] = {
+    {.name = "lets_go",
+     .unit = "",
+     .meaning = "0: it pushes back at any depth; 1: it lets go of a body whose centre has crossed its surface, as LAMMPS's region walls do",
+     .initial = 0.0,
+     .minimum = 0.0,
+     .maximum = 1.0},
+    {.name = NULL},
+};
 
 // Both frames serve one function: in 2D bodies are turned about z only, so a plane's normal is its own y axis; the world gives X with
 // the normal's coordinate in z in 3D and in y in 2D, where z is zero.

@@ -130,6 +130,19 @@ static double true_drift(const pls_world *world)
     return largest + second + list->image_drift;
 }
 
+/// How far behind their surfaces walls hold: a parameter of their shapes.
+static void set_wall_depths(pls_world *world)
+{
+    for (size_t k = 0; k < world->list.section_count; ++k)
+    {
+        pls_pair_section *section = &world->list.section[k];
+        if (!section->wall) continue;
+        const pls_shape_instance *shape = &world->shape[world->bodies.kind[section->wall_row].shape];
+        int place = pls_parameter_find(shape->ops->parameters, "lets_go");
+        if (place >= 0 && shape->values[place] > 0.5) section->depth = 0.0;
+    }
+}
+
 pls_status pls_neighbours_refresh(pls_world *world)
 {
     pls_pair_list *list = &world->list;
@@ -143,6 +156,7 @@ pls_status pls_neighbours_refresh(pls_world *world)
     tune_skin(world);
     if (world->def.reorder && list->builds % builds_per_order == 0) PLS_TRY(order_bodies(world));
     PLS_TRY(pls_pair_list_build(list, &world->bodies, &world->domain, &world->laws, world->tuner.skin, &world->memory));
+    set_wall_depths(world);
     world->memory_holds = false;
     world->memory.count = 0;
     if (world->special_stale) PLS_TRY(pls_find_specials(world));

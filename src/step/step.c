@@ -19,6 +19,7 @@ enum
 {
     GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
     STABLE_STEPS = 4096, ///< steps between looks at the stable step
+    SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
@@ -32,9 +33,10 @@ static void find_contacts_and_forces(pls_world *world, double dt)
                                      .orientation = world->bodies.orientation,
                                      .domain = &world->domain,
                                      .laws = &world->laws,
+                                     .large = world->bodies.count > PLS_LARGE_WORLD,
                                      .growing = world->state_count > 0,
                                      .dt = dt};
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (list->block_count > SERIAL_BLOCKS)
     for (size_t b = 0; b < list->block_count; ++b)
         PLS_SIMD_SELECT(pls_contact_block)(list, &input, &list->block[b], &world->work[omp_get_thread_num()]);
 }
@@ -77,7 +79,7 @@ static pls_status begin_bodies(pls_world *world)
 {
     pls_bodies *bodies = &world->bodies;
     pls_drift_report total = {0.0, 0.0};
-#pragma omp parallel
+#pragma omp parallel if (bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
         pls_drift_report part = {0.0, 0.0};
 #pragma omp for schedule(static)
@@ -96,7 +98,7 @@ static pls_status finish_bodies(pls_world *world, double dt, double time, bool g
     pls_drift_report total = {0.0, 0.0};
     pls_status worst = PLS_OK;
     char message[512] = "";
-#pragma omp parallel
+#pragma omp parallel if (bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
         pls_drift_report part = {0.0, 0.0};
 #pragma omp for schedule(static)

@@ -23,6 +23,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static const int least_iterations = 12;      ///< of the power method
+static const double slow_growth = 5e-4;       ///< relative growth of the quotient per iteration at which it stops
 static const int iterations = 60;            ///< of the power method; its quotient is then within the margin for packings of any size tried
 static const double quotient_margin = 1.03;  ///< added to the quotient
 static const double near_gap = 0.05;        ///< of the radius: pairs nearer than this count as contacts before the first step
@@ -303,7 +305,9 @@ static double largest_of_whole(const whole *w, const pls_bodies *b, bool damping
         multiply_whole(w, damping, dimension);
         for (size_t m = 0; m < 6 * w->rows; ++m) xx += w->x[m] * w->x[m], xy += w->x[m] * w->y[m], yy += w->y[m] * w->y[m];
         if (!(yy > 0.0)) return 0.0;
+        double before = quotient;
         quotient = xy / xx;
+        if (k >= least_iterations && quotient - before < slow_growth * quotient) break;
         double scale = 1.0 / sqrt(yy);
         for (size_t m = 0; m < 6 * w->rows; ++m) w->x[m] = scale * w->y[m];
     }

@@ -21,8 +21,10 @@ static inline void turn(pls_body_orientation *orientation, pls_v4 w, double half
     double x = half * w[0], y = half * w[1], z = half * w[2];
     double qw = orientation->w, qx = orientation->x, qy = orientation->y, qz = orientation->z;
     pls_v4 q = {qw - x * qx - y * qy - z * qz, qx + x * qw + y * qz - z * qy, qy - x * qz + y * qw + z * qx, qz + x * qy - y * qx + z * qw};
-    double norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    pls_v4_store(&orientation->w, q / pls_v4_set(norm));
+    // 1/|q| from |q|^2 = 1 + e; a body turns little in a step, so the series is exact to round-off nearly always.
+    double e = (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]) - 1.0;
+    double scale = e < 1e-4 && e > -1e-4 ? 1.0 - e * (0.5 - e * (0.375 - e * 0.3125)) : 1.0 / sqrt(1.0 + e);
+    pls_v4_store(&orientation->w, pls_v4_set(scale) * q);
 }
 
 void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report)
@@ -64,7 +66,7 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
 typedef struct gathered
 {
     pls_v4 force, torque;
-    double power, work;
+    pls_v2 booked; ///< power taken by dashpots, work taken by sliding
 } gathered;
 
 /// List the touching entries of a row anew.
@@ -84,9 +86,19 @@ static inline void add_pair(const pls_pair_list *list, uint32_t entry, double ra
     pls_v4 low = pls_v4_load(slot), high = pls_v4_load(slot + 4);
     g->force += (pls_v4)((pls_v4i)low ^ (pls_v4i){sign, sign, sign, sign});
     g->torque += (radius - low[3]) * only_first_three(high);
-    const float *booked = (const float *)(slot + 7);
-    g->power += (double)booked[0];
-    g->work += (double)booked[1];
+    g->booked += __builtin_convertvector(*(const pls_f2 *)(slot + 7), pls_v2);
+}
+
+enum
+{
+    ROWS_AHEAD = 8,   ///< rows whose forces are fetched into the cache before they are summed; within PLS_ROW_REACH
+    ENTRIES_AHEAD = 8 ///< entries fetched of such a row; what lies behind its touching ones does no harm
+};
+
+static inline void fetch_slots(const pls_pair_list *list, size_t row)
+{
+    const uint32_t *entry = list->near_entry + list->pairs.start[row];
+    for (int k = 0; k < ENTRIES_AHEAD; ++k) __builtin_prefetch(list->slot + (size_t)(entry[k] >> 1) * PLS_SLOT);
 }
 
 static inline void gather_pairs(pls_pair_list *list, size_t row, double radius, gathered *g)
@@ -114,8 +126,7 @@ static inline void gather_walls(const pls_pair_list *list, size_t row, gathered 
             g->force += force;
             g->torque += pls_v4_load(slot + 4);
         }
-        g->power += slot[3];
-        g->work += slot[7];
+        g->booked += (pls_v2){slot[3], slot[7]};
     }
 }
 
@@ -134,23 +145,25 @@ static inline void finish_row(pls_bodies *bodies, size_t row, double dt, const g
     pls_v4_store(&load->fx, f);
     pls_v4_store(&load->tx, t);
 
-    double power = 0.5 * g->power; // half of each contact's dissipation to either body
+    double power = 0.5 * g->booked[0]; // half of each contact's dissipation to either body
     energy->damped += half * (energy->power + power);
     energy->power = power;
-    energy->slid += 0.5 * g->work;
+    energy->slid += 0.5 * g->booked[1];
 }
 
 void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
                                  const double *torque)
 {
+    const bool large = bodies->count > PLS_LARGE_WORLD;
     for (size_t row = first; row < last; ++row)
     {
-        gathered g = {pls_v4_set(0.0), pls_v4_set(0.0), 0.0, 0.0};
+        gathered g = {pls_v4_set(0.0), pls_v4_set(0.0), {0.0, 0.0}};
         if (force)
         {
             g.force = pls_v4_load(force + 4 * (row - first));
             g.torque = pls_v4_load(torque + 4 * (row - first));
         }
+        if (large) fetch_slots(list, row + ROWS_AHEAD);
         gather_pairs(list, row, bodies->place[row].radius, &g);
         gather_walls(list, row, &g);
         finish_row(bodies, row, dt, &g);
