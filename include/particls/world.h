@@ -104,7 +104,7 @@ pls_status pls_world_create(const pls_world_def *def, pls_world **world);
 void pls_world_destroy(pls_world *world);
 
 /// @name Building
-/// All of these may also be called between steps.
+/// All of these may also be called between steps. `values` holds the parameters of `ops` in order of its table; null: all defaults.
 /// @{
 pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, pls_shape_id *id);
 pls_status pls_world_add_material(pls_world *world, const pls_material_def *def, pls_material_id *id);

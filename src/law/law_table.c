@@ -66,7 +66,8 @@ pls_status pls_law_table_set(pls_law_table *table, uint16_t a, uint16_t b, const
     }
     pls_law before = table->law[place], *law = &table->law[place];
     *law = (pls_law){.ops = ops, .material = {a, b}, .lever_at_surface = !is_new && before.lever_at_surface};
-    memcpy(law->values, values, (size_t)pls_parameter_values(ops->parameters) * sizeof *values);
+    if (values) memcpy(law->values, values, (size_t)pls_parameter_values(ops->parameters) * sizeof *values);
+    else pls_parameters_default(ops->parameters, law->values);
     pls_status status = pls_law_table_prepare(table, place);
     if (status != PLS_OK)
     {

@@ -136,8 +136,16 @@ pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_sha
     if (!(world->def.dimension == 2 ? ops->in_2d : ops->in_3d)) return pls_fail(PLS_INVALID_ARGUMENT, "a %s cannot be used in %dD", ops->name, world->def.dimension);
     if (!ops->unbounded && strcmp(ops->name, "sphere") != 0)
         return pls_fail(PLS_INVALID_ARGUMENT, "there is no contact detection between a '%s' and other bodies", ops->name);
+    double defaults[PLS_MAX_PARAMETERS];
     char owner[PLS_NAME_SIZE + 16];
     snprintf(owner, sizeof owner, "shape '%s'", name);
+    if (pls_parameter_values(ops->parameters) > PLS_MAX_PARAMETERS)
+        return pls_fail(PLS_LIMIT_EXCEEDED, "%s has more than %d parameters", owner, PLS_MAX_PARAMETERS);
+    if (!values)
+    {
+        pls_parameters_default(ops->parameters, defaults);
+        values = defaults;
+    }
     PLS_TRY(pls_parameters_check(ops->parameters, values, owner));
     if (world->shape_count >= UINT16_MAX - 1) return pls_fail(PLS_LIMIT_EXCEEDED, "a world holds at most %d shapes", UINT16_MAX - 1);
     PLS_TRY(pls_reserve(&world->shape, &world->shape_capacity, world->shape_count + 1, sizeof *world->shape, "shapes"));
