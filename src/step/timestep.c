@@ -168,34 +168,39 @@ static void add_missing(const pls_world *world, uint32_t row, int coordination, 
     rates->contacts += missing;
 }
 
-static void square(const double *a, double *out)
-{
-    for (int r = 0; r < 6; ++r)
-        for (int c = 0; c < 6; ++c)
-        {
-            double sum = 0.0;
-            for (int k = 0; k < 6; ++k) sum += a[6 * r + k] * a[6 * k + c];
-            out[6 * r + c] = sum;
-        }
-}
-
-/// A cheap bound of the largest eigenvalue: the eighth root of the largest row sum of A^8 (Gershgorin; at most 12 % too large).
+/// A cheap bound of the largest eigenvalue, at most 1.5 % too large: the 64th root of the largest row sum of A^64 (Gershgorin), by six squarings, each of a
+/// matrix whose largest entry is one.
 static double power_bound(const double *a)
 {
-    double largest = 0.0, scale = 0.0, scaled[36], second[36], fourth[36], eighth[36];
-    for (int k = 0; k < 36; ++k) scale = fmax(scale, fabs(a[k])); // so that powers neither overflow nor vanish
-    if (!(scale > 0.0)) return 0.0;
-    for (int k = 0; k < 36; ++k) scaled[k] = a[k] / scale;
-    square(scaled, second);
-    square(second, fourth);
-    square(fourth, eighth);
+    enum { SQUARINGS = 6 };
+    double power[36], scale[SQUARINGS + 1];
+    for (int k = 0; k < 36; ++k) power[k] = a[k];
+    for (int s = 0; s <= SQUARINGS; ++s)
+    {
+        double next[36];
+        scale[s] = 0.0;
+        for (int k = 0; k < 36; ++k) scale[s] = fmax(scale[s], fabs(power[k]));
+        if (!(scale[s] > 0.0)) return 0.0;
+        for (int k = 0; k < 36; ++k) power[k] /= scale[s];
+        for (int r = 0; s < SQUARINGS && r < 6; ++r)
+            for (int c = 0; c < 6; ++c)
+            {
+                double sum = 0.0;
+                for (int k = 0; k < 6; ++k) sum += power[6 * r + k] * power[6 * c + k];
+                next[6 * r + c] = sum;
+            }
+        if (s < SQUARINGS) memcpy(power, next, sizeof power);
+    }
+    double bound = 0.0;
     for (int r = 0; r < 6; ++r)
     {
         double sum = 0.0;
-        for (int c = 0; c < 6; ++c) sum += fabs(eighth[6 * r + c]);
-        largest = fmax(largest, sum);
+        for (int c = 0; c < 6; ++c) sum += fabs(power[6 * r + c]);
+        bound = fmax(bound, sum);
     }
-    return scale * sqrt(sqrt(sqrt(largest)));
+    bound *= scale[SQUARINGS];
+    for (int s = SQUARINGS - 1; s >= 0; --s) bound = scale[s] * sqrt(bound); // of A_s = scale_s B, A_(s+1) = B^2
+    return bound;
 }
 
 static body_rates rates_of(const pls_world *world, uint32_t row, int coordination)

@@ -50,3 +50,11 @@ set xlabel 'time [s]'
 set ylabel 'relative error of the energy book'
 set format y '%.0e'
 plot data.'/cloud.tsv' using 1:2 with lines ls 1 notitle
+
+set output out.'/verify-compression.svg'
+set xlabel 'time [s]'
+set ylabel 'sum of {/Symbol s}_{zz} V [J]'
+set format y '%g'
+set key top right
+plot data.'/compression.tsv' using 1:3 with lines ls 9 lw 3 title 'LAMMPS', \
+     data.'/compression.tsv' using 1:2 with lines ls 2 lw 1 title 'simulated'
