@@ -41,22 +41,20 @@ static void find_contacts_and_forces(pls_world *world, double dt)
         PLS_SIMD_SELECT(pls_contact_block)(list, &input, &list->block[b], &world->work[omp_get_thread_num()]);
 }
 
-static pls_status finish_block(pls_world *world, size_t first, size_t last, double dt, double time)
+static pls_status finish_block(pls_world *world, size_t first, size_t last, double dt, double time, pls_drift_report *next)
 {
     double force[4 * BODY_BLOCK] __attribute__((aligned(64))), torque[4 * BODY_BLOCK] __attribute__((aligned(64)));
     double scratch[PLS_FORCE_SCRATCH] __attribute__((aligned(64)));
     bool forced = world->force_count > 0;
     if (forced) PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
-    PLS_SIMD_SELECT(pls_verlet_finish)(&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL);
+    PLS_SIMD_SELECT(pls_verlet_finish)(&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL, next);
     return PLS_OK;
 }
 
-static void begin_block(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *total)
+static void add_report(pls_drift_report *total, const pls_drift_report *part)
 {
-    pls_drift_report report;
-    PLS_SIMD_SELECT(pls_verlet_begin)(bodies, first, last, dt, &report);
-    if (report.largest_square > total->largest_square) total->largest_square = report.largest_square;
-    total->poison += report.poison; // zeros, or NaN: no order to keep
+    if (part->largest_square > total->largest_square) total->largest_square = part->largest_square;
+    total->poison += part->poison; // zeros, or NaN: no order to keep
 }
 
 static pls_status judge_drift(pls_world *world, const pls_drift_report *total)
@@ -66,32 +64,27 @@ static pls_status judge_drift(pls_world *world, const pls_drift_report *total)
     return PLS_OK;
 }
 
-static void join_report(pls_drift_report *total, const pls_drift_report *part)
-{
-#pragma omp critical(pls_drift_report)
-    {
-        if (part->largest_square > total->largest_square) total->largest_square = part->largest_square;
-        total->poison += part->poison;
-    }
-}
-
 static pls_status begin_bodies(pls_world *world)
 {
     pls_bodies *bodies = &world->bodies;
     pls_drift_report total = {0.0, 0.0};
 #pragma omp parallel if (bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
-        pls_drift_report part = {0.0, 0.0};
+        pls_drift_report mine = {0.0, 0.0}, part;
 #pragma omp for schedule(static)
         for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
-            begin_block(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
-        join_report(&total, &part);
+        {
+            PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
+            add_report(&mine, &part);
+        }
+#pragma omp critical(pls_drift_report)
+        add_report(&total, &mine);
     }
     return judge_drift(world, &total);
 }
 
-/// Gather forces and finish velocities; `time` is the instant of the forces. With `go_on` each block of bodies begins its next step at once, while its rows
-/// are in the cache.
+/// Gather forces and finish velocities; `time` is the instant of the forces. With `go_on` each body begins its next step at once, while its rows
+/// are at hand.
 static pls_status finish_bodies(pls_world *world, double dt, double time, bool go_on)
 {
     pls_bodies *bodies = &world->bodies;
@@ -100,13 +93,13 @@ static pls_status finish_bodies(pls_world *world, double dt, double time, bool g
     char message[512] = "";
 #pragma omp parallel if (bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
-        pls_drift_report part = {0.0, 0.0};
+        pls_drift_report mine = {0.0, 0.0}, part = {0.0, 0.0};
 #pragma omp for schedule(static)
         for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
         {
             size_t first = b * BODY_BLOCK, last = pls_block_end(b, BODY_BLOCK, bodies->count);
-            pls_status status = finish_block(world, first, last, dt, time);
-            if (status == PLS_OK && go_on) begin_block(bodies, first, last, dt, &part);
+            pls_status status = finish_block(world, first, last, dt, time, go_on ? &part : NULL);
+            add_report(&mine, &part);
             if (status == PLS_OK) continue;
 #pragma omp critical(pls_finish_failure)
             {
@@ -114,7 +107,8 @@ static pls_status finish_bodies(pls_world *world, double dt, double time, bool g
                 strncpy(message, pls_last_message(), sizeof message - 1); // messages belong to threads; bring it to ours
             }
         }
-        join_report(&total, &part);
+#pragma omp critical(pls_drift_report)
+        add_report(&total, &mine);
     }
     if (worst != PLS_OK) return pls_fail(worst, "%s", message);
     return go_on ? judge_drift(world, &total) : PLS_OK;

@@ -27,40 +27,53 @@ static inline void turn(pls_body_orientation *orientation, pls_v4 w, double half
     pls_v4_store(&orientation->w, pls_v4_set(scale) * q);
 }
 
-void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report)
+typedef struct drift_sums
+{
+    pls_v4 largest; ///< squared components of displacements
+    pls_v4 poison;
+} drift_sums;
+
+static inline __attribute__((always_inline)) void begin_row(pls_bodies *bodies, size_t row, double dt, drift_sums *sums)
 {
     const double half = 0.5 * dt, quarter = 0.25 * dt;
-    pls_v4 largest = pls_v4_set(0.0), poison = pls_v4_set(0.0);
-    for (size_t row = first; row < last; ++row)
-    {
-        pls_body_place *p = &bodies->place[row];
-        pls_body_spin *s = &bodies->spin[row];
-        const pls_body_load *now = &bodies->load[row];
-        pls_f8 *before = (pls_f8 *)&bodies->before[row];
-        pls_v4 x = pls_v4_load(&p->x), v = pls_v4_load(&p->vx), w = pls_v4_load(&s->wx);
-        pls_v4 f = pls_v4_load(&now->fx), t = pls_v4_load(&now->tx);
-        pls_v8 old = __builtin_convertvector(*before, pls_v8);
-        pls_v4 a = only_first_three(f * now->inv_mass), b = only_first_three(t * now->inv_inertia);
-        pls_v4 a_last = only_first_three(pls_v8_low(old) * now->inv_mass), b_last = only_first_three(pls_v8_high(old) * now->inv_inertia);
-        *before = __builtin_convertvector(pls_v8_join(only_first_three(f), only_first_three(t)), pls_f8);
+    pls_body_place *p = &bodies->place[row];
+    pls_body_spin *s = &bodies->spin[row];
+    const pls_body_load *now = &bodies->load[row];
+    pls_f8 *before = (pls_f8 *)&bodies->before[row];
+    pls_v4 x = pls_v4_load(&p->x), v = pls_v4_load(&p->vx), w = pls_v4_load(&s->wx);
+    pls_v4 f = pls_v4_load(&now->fx), t = pls_v4_load(&now->tx);
+    pls_v8 old = __builtin_convertvector(*before, pls_v8);
+    pls_v4 a = only_first_three(f * now->inv_mass), b = only_first_three(t * now->inv_inertia);
+    pls_v4 a_last = only_first_three(pls_v8_low(old) * now->inv_mass), b_last = only_first_three(pls_v8_high(old) * now->inv_inertia);
+    *before = __builtin_convertvector(pls_v8_join(only_first_three(f), only_first_three(t)), pls_f8);
 
-        pls_v4 u = v + half * a, uw = w + half * b;
-        pls_v4 step = only_first_three(dt * u), lead = quarter * (a + a_last), end = uw + quarter * (b + b_last);
-        u[3] = lead[2];
-        uw[3] = lead[0];
-        end[3] = lead[1];
-        pls_v4_store(&p->x, x + step);
-        pls_v4_store(&p->vx, u);
-        pls_v4_store(&s->wx, uw);
-        pls_v4_store(&s->end_x, end);
-        turn(&bodies->orientation[row], uw, half);
+    pls_v4 u = v + half * a, uw = w + half * b;
+    pls_v4 step = only_first_three(dt * u), lead = quarter * (a + a_last), end = uw + quarter * (b + b_last);
+    u[3] = lead[2];
+    uw[3] = lead[0];
+    end[3] = lead[1];
+    pls_v4_store(&p->x, x + step);
+    pls_v4_store(&p->vx, u);
+    pls_v4_store(&s->wx, uw);
+    pls_v4_store(&s->end_x, end);
+    turn(&bodies->orientation[row], uw, half);
 
-        pls_v4 square = step * step;
-        largest = pls_v4_pick((pls_v4i)(largest > square), largest, square);
-        poison += square * 0.0 + only_first_three(uw) * 0.0;
-    }
-    report->largest_square = largest[0] + largest[1] + largest[2];
-    report->poison = poison[0] + poison[1] + poison[2];
+    pls_v4 square = step * step;
+    sums->largest = pls_v4_pick((pls_v4i)(sums->largest > square), sums->largest, square);
+    sums->poison += square * 0.0 + only_first_three(uw) * 0.0;
+}
+
+static inline void report_drift(const drift_sums *sums, pls_drift_report *report)
+{
+    report->largest_square = sums->largest[0] + sums->largest[1] + sums->largest[2];
+    report->poison = sums->poison[0] + sums->poison[1] + sums->poison[2];
+}
+
+void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report)
+{
+    drift_sums sums = {pls_v4_set(0.0), pls_v4_set(0.0)};
+    for (size_t row = first; row < last; ++row) begin_row(bodies, row, dt, &sums);
+    report_drift(&sums, report);
 }
 
 typedef struct gathered
@@ -152,8 +165,9 @@ static inline void finish_row(pls_bodies *bodies, size_t row, double dt, const g
 }
 
 void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
-                                 const double *torque)
+                                 const double *torque, pls_drift_report *next)
 {
+    drift_sums sums = {pls_v4_set(0.0), pls_v4_set(0.0)};
     const bool large = bodies->count > PLS_LARGE_WORLD;
     for (size_t row = first; row < last; ++row)
     {
@@ -167,5 +181,7 @@ void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t
         gather_pairs(list, row, bodies->place[row].radius, &g);
         gather_walls(list, row, &g);
         finish_row(bodies, row, dt, &g);
+        if (next) begin_row(bodies, row, dt, &sums);
     }
+    if (next) report_drift(&sums, next);
 }
