@@ -142,7 +142,7 @@ for ((round = 1; round <= rounds; ++round)); do
     done
 done
 
-version=$(sed -n 's/^#define PLS_VERSION_TEXT "\(.*\)"/\1/p' "$root/include/particls/types.h")
+version=$(sed -n 's/^#define PLS_VERSION_TEXT *"\(.*\)"/\1/p' "$root/include/particls/types.h")
 compiler=$(sed -n 's/^CMAKE_C_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
 cat >"$results/machine.tsv" <<TEXT
 date	$(date -u +%Y-%m-%d)

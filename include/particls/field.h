@@ -12,20 +12,12 @@ extern "C" {
 
 struct pls_world;
 
-typedef enum pls_type
-{
-    PLS_F64,
-    PLS_F32,
-    PLS_U32,
-    PLS_U16,
-    PLS_U8
-} pls_type;
+typedef enum pls_type { PLS_F64, PLS_F32, PLS_U32, PLS_U16, PLS_U8 } pls_type;
 
 /// Bytes of one component.
 size_t pls_type_size(pls_type type);
 
-typedef enum pls_field_flags
-{
+typedef enum pls_field_flags {
     PLS_FIELD_PERSISTS = 1, ///< lives from step to step: checkpointed and hashed
     PLS_FIELD_FRAME = 2,    ///< written to frames by default
     PLS_FIELD_ID = 4        ///< the persistent number that orders rows
@@ -40,12 +32,11 @@ typedef struct pls_field
     unsigned flags;
     const char *unit;
     const char *meaning;
-    int column;      ///< which column of the table
-    size_t offset;   ///< bytes within a row of the column
+    int column;    ///< which column of the table
+    size_t offset; ///< bytes within a row of the column
 } pls_field;
 
-typedef enum pls_table_kind
-{
+typedef enum pls_table_kind {
     PLS_TABLE_BODIES,
     PLS_TABLE_CONTACTS, ///< touching contacts, in order of (lower id, higher id); made on request
     PLS_TABLE_STATES,

@@ -17,16 +17,16 @@ extern "C" {
 typedef struct pls_force_batch
 {
     size_t count;
-    double time;                                          ///< [s]
-    const double *x, *y, *z;                              ///< centre of mass [m]
-    const double *vx, *vy, *vz;                           ///< [m/s]
-    const double *wx, *wy, *wz;                           ///< [rad/s]
-    const double *mass;                                   ///< [kg], infinite for unbounded bodies
-    const double *radius;                                 ///< bounding radius [m]
-    const uint32_t *body;                                 ///< persistent number
-    const uint32_t *group;                                ///< group id's index1
-    double *force_x, *force_y, *force_z;                  ///< [N]
-    double *torque_x, *torque_y, *torque_z;               ///< [N m]
+    double time;                            ///< [s]
+    const double *x, *y, *z;                ///< centre of mass [m]
+    const double *vx, *vy, *vz;             ///< [m/s]
+    const double *wx, *wy, *wz;             ///< [rad/s]
+    const double *mass;                     ///< [kg], infinite for unbounded bodies
+    const double *radius;                   ///< bounding radius [m]
+    const uint32_t *body;                   ///< persistent number
+    const uint32_t *group;                  ///< group id's index1
+    double *force_x, *force_y, *force_z;    ///< [N]
+    double *torque_x, *torque_y, *torque_z; ///< [N m]
 } pls_force_batch;
 
 typedef struct pls_force_ops

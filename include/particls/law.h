@@ -29,19 +29,19 @@ typedef struct pls_material_values
 typedef struct pls_law_batch
 {
     size_t count;
-    double dt;                                                             ///< [s]
-    const double *constants;                                               ///< what `prepare` left
-    const double *delta;                                                   ///< overlap > 0 [m]
-    const double *normal_velocity;                                         ///< d(delta)/dt, positive when approaching [m/s]
-    const double *slip_velocity_x, *slip_velocity_y, *slip_velocity_z;     ///< v_t of i relative to j at the contact point [m/s]
-    const double *effective_radius;                                        ///< r_i r_j / (r_i + r_j) [m], if `needs_effective`
-    const double *effective_mass;                                          ///< m_i m_j / (m_i + m_j) [kg], if `needs_effective`
-    double *spring_x, *spring_y, *spring_z;                                ///< in: tangential spring had it not slid [m]; out: after sliding
-    double *history[PLS_LAW_MAX_HISTORY];                                  ///< in and out: the law's own numbers, zero when contact begins
-    double *normal_force;                                                  ///< out: repulsive positive [N]; force on i is -normal_force n + shear
-    double *shear_force_x, *shear_force_y, *shear_force_z;                 ///< out: tangential force on i [N]
-    double *damping_power;                                                 ///< out: power taken by the dashpots [W]
-    double *slip_work;                                                     ///< out: work taken by sliding in this step [J]
+    double dt;                                                         ///< [s]
+    const double *constants;                                           ///< what `prepare` left
+    const double *delta;                                               ///< overlap > 0 [m]
+    const double *normal_velocity;                                     ///< d(delta)/dt, positive when approaching [m/s]
+    const double *slip_velocity_x, *slip_velocity_y, *slip_velocity_z; ///< v_t of i relative to j at the contact point [m/s]
+    const double *effective_radius;                                    ///< r_i r_j / (r_i + r_j) [m], if `needs_effective`
+    const double *effective_mass;                                      ///< m_i m_j / (m_i + m_j) [kg], if `needs_effective`
+    double *spring_x, *spring_y, *spring_z;                            ///< in: tangential spring had it not slid [m]; out: after sliding
+    double *history[PLS_LAW_MAX_HISTORY];                              ///< in and out: the law's own numbers, zero when contact begins
+    double *normal_force;                                  ///< out: repulsive positive [N]; force on i is -normal_force n + shear
+    double *shear_force_x, *shear_force_y, *shear_force_z; ///< out: tangential force on i [N]
+    double *damping_power;                                 ///< out: power taken by the dashpots [W]
+    double *slip_work;                                     ///< out: work taken by sliding in this step [J]
 } pls_law_batch;
 
 /// Tangent stiffness and damping of one contact, for the stable step and the tangent operator D.
@@ -54,10 +54,10 @@ typedef struct pls_contact_stiffness
 /// One contact, for the scalar questions.
 typedef struct pls_contact_point
 {
-    double delta;                             ///< [m]
-    double effective_radius, effective_mass;  ///< [m], [kg]
-    double spring_squared;                    ///< |spring|^2 [m^2]
-    const double *history;                    ///< the law's own numbers
+    double delta;                            ///< [m]
+    double effective_radius, effective_mass; ///< [m], [kg]
+    double spring_squared;                   ///< |spring|^2 [m^2]
+    const double *history;                   ///< the law's own numbers
 } pls_contact_point;
 
 typedef struct pls_law_ops

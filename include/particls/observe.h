@@ -19,8 +19,7 @@ typedef struct pls_schedule
 } pls_schedule;
 
 /// What a collection observer can measure.
-enum
-{
+enum {
     PLS_MEASURE_STRESS = 1,       ///< Cauchy stress, P1 eq. 24 with each pair once, tension positive [Pa]
     PLS_MEASURE_TANGENT = 2,      ///< tangent operator D, P1 eq. 29, all components [Pa]
     PLS_MEASURE_FABRIC = 4,       ///< mean of n (x) n over contacts
@@ -30,8 +29,7 @@ enum
     PLS_MEASURE_POROSITY = 64     ///< 1 - solid volume / volume
 };
 
-typedef enum pls_volume_kind
-{
+typedef enum pls_volume_kind {
     PLS_VOLUME_BOUNDING_BOX, ///< smallest axis-aligned box that holds the bounded bodies of the collection (P1)
     PLS_VOLUME_BOX,          ///< the box `lower`..`upper`
     PLS_VOLUME_PERIODIC,     ///< the periodic box (bounding box along other axes)
@@ -41,22 +39,22 @@ typedef enum pls_volume_kind
 /// A collection: the bodies it holds, the volume it is averaged over and what is measured.
 typedef struct pls_collection_def
 {
-    unsigned quantities;          ///< PLS_MEASURE_ bits
-    char group[PLS_NAME_SIZE];    ///< only bodies of this group; "" or "all": all
+    unsigned quantities;       ///< PLS_MEASURE_ bits
+    char group[PLS_NAME_SIZE]; ///< only bodies of this group; "" or "all": all
     pls_volume_kind volume_kind;
-    double volume;                ///< [m^3], 2D [m^2] times thickness; for PLS_VOLUME_VALUE
-    pls_vec3 lower, upper;        ///< for PLS_VOLUME_BOX [m]: bodies with their centre inside, contacts with their point inside
-    bool include_walls;           ///< count contacts with unbounded bodies in stress, tangent and fabric; true by default (P1)
+    double volume;         ///< [m^3], 2D [m^2] times thickness; for PLS_VOLUME_VALUE
+    pls_vec3 lower, upper; ///< for PLS_VOLUME_BOX [m]: bodies with their centre inside, contacts with their point inside
+    bool include_walls;    ///< count contacts with unbounded bodies in stress, tangent and fabric; true by default (P1)
 } pls_collection_def;
 
 /// What was measured. Components that do not exist in 2D are zero.
 typedef struct pls_collection
 {
-    double volume;                ///< [m^3]
-    double stress[3][3];          ///< [Pa]
-    double tangent[3][3][3][3];   ///< [Pa]
+    double volume;              ///< [m^3]
+    double stress[3][3];        ///< [Pa]
+    double tangent[3][3][3][3]; ///< [Pa]
     double fabric[3][3];
-    double coordination;          ///< mean number of contacts of a bounded body
+    double coordination; ///< mean number of contacts of a bounded body
     uint64_t contacts;
     double energy_kinetic, energy_rotation, energy_normal, energy_shear, energy_potential, energy_damped, energy_slid; ///< [J]
     pls_vec3 momentum, angular_momentum;
@@ -71,13 +69,12 @@ pls_status pls_measure_collection(pls_world *world, const pls_collection_def *de
 /// "angular_velocity", "force", "torque", "scale", ...) of each body.
 typedef struct pls_particle_def
 {
-    char group[PLS_NAME_SIZE];            ///< its entry's name; every body of the group is tracked
+    char group[PLS_NAME_SIZE]; ///< its entry's name; every body of the group is tracked
     int quantity_count;
     char quantities[16][PLS_NAME_SIZE];
 } pls_particle_def;
 
-typedef enum pls_observer_kind
-{
+typedef enum pls_observer_kind {
     PLS_OBSERVE_PARTICLE,
     PLS_OBSERVE_COLLECTION,
     PLS_OBSERVE_FRAMES,

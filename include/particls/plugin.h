@@ -24,7 +24,7 @@ struct pls_plugin_host
 
 typedef pls_status pls_plugin_function(pls_plugin_host *host);
 #define PLS_PLUGIN_FUNCTION "particls_plugin"
-#define PLS_PLUGIN_API "particls_plugin_api"
+#define PLS_PLUGIN_API      "particls_plugin_api"
 
 #ifdef __cplusplus
 }

@@ -17,10 +17,10 @@ extern "C" {
 /// How far a run is, for progress.
 typedef struct pls_progress
 {
-    double time, end; ///< [s]
+    double time, end;     ///< [s]
     uint64_t step, steps; ///< done, expected in all
-    double wall;      ///< since this process began stepping [s]
-    double remaining; ///< estimate [s]
+    double wall;          ///< since this process began stepping [s]
+    double remaining;     ///< estimate [s]
     size_t bodies, contacts;
     const char *event; ///< null, or a line worth telling ("checkpoint written at t = 0.25 s")
 } pls_progress;
@@ -28,13 +28,13 @@ typedef struct pls_progress
 /// Copy `pls_default_run_def()` and change what you need.
 typedef struct pls_run_def
 {
-    const char *directory;                                          ///< run directory; made if missing
-    bool overwrite;                                                 ///< replace the results of an earlier run there; else it is an error
-    double until;                                                   ///< end time in place of the scene's, NaN: the scene's
-    void (*progress)(void *context, const pls_progress *progress);  ///< may be null; called a few times a second
+    const char *directory;                                         ///< run directory; made if missing
+    bool overwrite;                                                ///< replace the results of an earlier run there; else it is an error
+    double until;                                                  ///< end time in place of the scene's, NaN: the scene's
+    void (*progress)(void *context, const pls_progress *progress); ///< may be null; called a few times a second
     void *context;
-    const volatile int *interrupt;                                  ///< set it from a signal handler: a checkpoint is written and the run ends with INTERRUPTED
-    const pls_observer_def *observers;                              ///< further observers (kind PLS_OBSERVE_USER and others), may be null
+    const volatile int *interrupt;     ///< set it from a signal handler: a checkpoint is written and the run ends with INTERRUPTED
+    const pls_observer_def *observers; ///< further observers (kind PLS_OBSERVE_USER and others), may be null
     size_t observer_count;
     uint32_t cookie;
 } pls_run_def;

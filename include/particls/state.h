@@ -29,8 +29,7 @@ typedef struct pls_state_point
     const double *all;         ///< all state values at `time`, in order of creation (first stage: at t, second stage: at t + dt/2)
 } pls_state_point;
 
-typedef enum pls_state_target
-{
+typedef enum pls_state_target {
     PLS_STATE_FREE,   ///< nothing; read it through the API, expressions or `apply`
     PLS_STATE_SCALE,  ///< component 0 is the body's scale
     PLS_STATE_RADIUS, ///< component 0 is the body's bounding radius [m]: scale = s / radius of the unscaled shape

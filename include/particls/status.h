@@ -12,30 +12,29 @@ extern "C" {
 #endif
 
 /// The one list of status codes: name, text. The enumeration, `pls_status_text()` and the docs come from it.
-#define PLS_STATUS_LIST(X)                                                                                             \
-    X(OK, "success")                                                                                                   \
-    X(OUT_OF_MEMORY, "out of memory")                                                                                  \
-    X(INVALID_ARGUMENT, "invalid argument")                                                                            \
-    X(NOT_FOUND, "not found")                                                                                          \
-    X(DUPLICATE, "already exists")                                                                                     \
-    X(LIMIT_EXCEEDED, "a limit of the program is exceeded")                                                            \
-    X(STALE_ID, "the id names something that no longer exists")                                                        \
-    X(SCENE, "the scene is wrong")                                                                                     \
-    X(EXPRESSION, "an expression is wrong")                                                                            \
-    X(IO, "input or output failed")                                                                                    \
-    X(DISK_FULL, "the disk is full")                                                                                   \
-    X(CORRUPT, "a file is damaged")                                                                                    \
-    X(VERSION, "a file or plugin is of another version")                                                               \
-    X(PLUGIN, "a plugin cannot be used")                                                                               \
-    X(UNSTABLE_STEP, "the time step is larger than the stable step")                                                   \
-    X(NOT_A_NUMBER, "a value is not a number")                                                                         \
-    X(LOST_BODY, "a body has left the domain")                                                                         \
-    X(RUNAWAY_OVERLAP, "two bodies overlap too deeply")                                                                \
-    X(INTERRUPTED, "interrupted")                                                                                      \
+#define PLS_STATUS_LIST(X)                                           \
+    X(OK, "success")                                                 \
+    X(OUT_OF_MEMORY, "out of memory")                                \
+    X(INVALID_ARGUMENT, "invalid argument")                          \
+    X(NOT_FOUND, "not found")                                        \
+    X(DUPLICATE, "already exists")                                   \
+    X(LIMIT_EXCEEDED, "a limit of the program is exceeded")          \
+    X(STALE_ID, "the id names something that no longer exists")      \
+    X(SCENE, "the scene is wrong")                                   \
+    X(EXPRESSION, "an expression is wrong")                          \
+    X(IO, "input or output failed")                                  \
+    X(DISK_FULL, "the disk is full")                                 \
+    X(CORRUPT, "a file is damaged")                                  \
+    X(VERSION, "a file or plugin is of another version")             \
+    X(PLUGIN, "a plugin cannot be used")                             \
+    X(UNSTABLE_STEP, "the time step is larger than the stable step") \
+    X(NOT_A_NUMBER, "a value is not a number")                       \
+    X(LOST_BODY, "a body has left the domain")                       \
+    X(RUNAWAY_OVERLAP, "two bodies overlap too deeply")              \
+    X(INTERRUPTED, "interrupted")                                    \
     X(USER, "a user function failed")
 
-typedef enum pls_status
-{
+typedef enum pls_status {
 #define PLS_STATUS_ENUM(name, text) PLS_##name,
     PLS_STATUS_LIST(PLS_STATUS_ENUM)
 #undef PLS_STATUS_ENUM
@@ -59,10 +58,10 @@ pls_status pls_fail(pls_status status, const char *format, ...) __attribute__((f
 pls_status pls_fail_context(pls_status status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /// Return early when a call fails.
-#define PLS_TRY(call)                                                                                                  \
-    do {                                                                                                               \
-        pls_status pls_try_status_ = (call);                                                                           \
-        if (pls_try_status_ != PLS_OK) return pls_try_status_;                                                         \
+#define PLS_TRY(call)                                          \
+    do {                                                       \
+        pls_status pls_try_status_ = (call);                   \
+        if (pls_try_status_ != PLS_OK) return pls_try_status_; \
     } while (0)
 
 #ifdef __cplusplus

@@ -53,16 +53,7 @@ typedef struct pls_material_def
 } pls_material_def;
 
 /// Degrees of freedom, for prescribed motion. World axes.
-enum
-{
-    PLS_AXIS_X = 1,
-    PLS_AXIS_Y = 2,
-    PLS_AXIS_Z = 4,
-    PLS_AXIS_RX = 8,
-    PLS_AXIS_RY = 16,
-    PLS_AXIS_RZ = 32,
-    PLS_AXIS_ALL = 63
-};
+enum { PLS_AXIS_X = 1, PLS_AXIS_Y = 2, PLS_AXIS_Z = 4, PLS_AXIS_RX = 8, PLS_AXIS_RY = 16, PLS_AXIS_RZ = 32, PLS_AXIS_ALL = 63 };
 
 /// Motion of a driven body: axes in `axes` follow the given velocities, the others obey forces. A fixed body has axes = PLS_AXIS_ALL and zero velocities.
 typedef struct pls_motion_def
@@ -151,12 +142,12 @@ pls_status pls_world_run(pls_world *world, uint64_t steps);
 /// Estimate of the stable step [s] with what limits it.
 typedef struct pls_step_estimate
 {
-    double dt;          ///< largest stable step, infinity when nothing limits it
-    double stiffness;   ///< largest eigenvalue bound of M^-1 K [1/s^2] at the limiting body
-    double damping;     ///< of M^-1 C [1/s] at the limiting body
-    uint32_t body;      ///< persistent number of the limiting body
-    int contacts;       ///< contacts counted at that body
-    bool damping_limits;///< the dashpots, not the springs, set the limit
+    double dt;           ///< largest stable step, infinity when nothing limits it
+    double stiffness;    ///< largest eigenvalue bound of M^-1 K [1/s^2] at the limiting body
+    double damping;      ///< of M^-1 C [1/s] at the limiting body
+    uint32_t body;       ///< persistent number of the limiting body
+    int contacts;        ///< contacts counted at that body
+    bool damping_limits; ///< the dashpots, not the springs, set the limit
 } pls_step_estimate;
 pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *estimate);
 /// @}
@@ -197,13 +188,13 @@ const char *pls_world_group_name(const pls_world *world, pls_group_id id);
 /// Memory and list figures.
 typedef struct pls_world_figures
 {
-    size_t bodies, touching, listed;       ///< bodies, touching contacts, pairs in the list
-    size_t body_bytes, contact_bytes;      ///< held by per-body and by per-pair arrays
-    uint64_t list_builds;                  ///< times the pair list was made
-    double skin;                           ///< now [m]
+    size_t bodies, touching, listed;                                                       ///< bodies, touching contacts, pairs in the list
+    size_t body_bytes, contact_bytes;                                                      ///< held by per-body and by per-pair arrays
+    uint64_t list_builds;                                                                  ///< times the pair list was made
+    double skin;                                                                           ///< now [m]
     double energy_kinetic, energy_rotation, energy_normal, energy_shear, energy_potential; ///< [J]
-    double energy_damped, energy_slid;     ///< dissipated since the start by dashpots and by sliding [J]
-    pls_vec3 momentum, angular_momentum;   ///< of bodies with mass, angular about the origin [kg m/s], [kg m^2/s]
+    double energy_damped, energy_slid;   ///< dissipated since the start by dashpots and by sliding [J]
+    pls_vec3 momentum, angular_momentum; ///< of bodies with mass, angular about the origin [kg m/s], [kg m^2/s]
 } pls_world_figures;
 pls_status pls_world_get_figures(pls_world *world, pls_world_figures *figures);
 /// @}

@@ -4,7 +4,13 @@
 #include "law/linear.h"
 
 static const pls_parameter parameters[] = {
-    {.name = "kn", .unit = "N/m", .meaning = "normal stiffness", .initial = PLS_REQUIRED, .minimum = 0.0, .maximum = INFINITY, .open_minimum = true},
+    {.name = "kn",
+     .unit = "N/m",
+     .meaning = "normal stiffness",
+     .initial = PLS_REQUIRED,
+     .minimum = 0.0,
+     .maximum = INFINITY,
+     .open_minimum = true},
     {.name = "ks", .unit = "N/m", .meaning = "shear stiffness", .initial = 0.0, .minimum = 0.0, .maximum = INFINITY},
     {.name = "friction", .unit = "", .meaning = "Coulomb friction coefficient", .initial = 0.0, .minimum = 0.0, .maximum = INFINITY},
     {.name = NULL},

@@ -13,7 +13,13 @@
 #include "law/builtin.h"
 
 static const pls_parameter parameters[] = {
-    {.name = "restitution", .unit = "", .meaning = "coefficient of normal restitution e", .initial = 1.0, .minimum = 0.0, .maximum = 1.0, .open_minimum = true},
+    {.name = "restitution",
+     .unit = "",
+     .meaning = "coefficient of normal restitution e",
+     .initial = 1.0,
+     .minimum = 0.0,
+     .maximum = 1.0,
+     .open_minimum = true},
     {.name = "friction", .unit = "", .meaning = "Coulomb friction coefficient", .initial = 0.0, .minimum = 0.0, .maximum = INFINITY},
     {.name = "limit_damping",
      .unit = "",

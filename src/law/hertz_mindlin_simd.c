@@ -19,8 +19,8 @@ void PLS_SIMD(pls_hertz_law)(const pls_law_batch *b)
         delta = pls_vd_pick((pls_vi)(delta < zero), zero, delta);
 
         pls_vd contact = pls_vd_sqrt(radius * delta), contact_old = pls_vd_sqrt(radius * old); // radius of the contact circle
-        pls_vd stiffness = 2.0 * e_star * contact;                                            // dFn/d(delta)
-        pls_vd spring_force = (2.0 / 3.0) * stiffness * delta;                                // 4/3 E* sqrt(R) delta^1.5
+        pls_vd stiffness = 2.0 * e_star * contact;                                             // dFn/d(delta)
+        pls_vd spring_force = (2.0 / 3.0) * stiffness * delta;                                 // 4/3 E* sqrt(R) delta^1.5
         pls_vd fn = spring_force + damping * pls_vd_sqrt(stiffness * mass) * vn;
         fn = pls_vd_pick((pls_vi)(fn < floor_force), pls_vd_set(floor_force), fn);
 
@@ -46,7 +46,8 @@ void PLS_SIMD(pls_hertz_law)(const pls_law_batch *b)
         pls_vd nx = pls_vd_pick(slides, -(fx + ct * vx) * inv_kt, sx);
         pls_vd ny = pls_vd_pick(slides, -(fy + ct * vy) * inv_kt, sy);
         pls_vd nz = pls_vd_pick(slides, -(fz + ct * vz) * inv_kt, sz);
-        work = work + 0.5 * kt * ((nx + sx - b->dt * vx) * (sx - nx) + (ny + sy - b->dt * vy) * (sy - ny) + (nz + sz - b->dt * vz) * (sz - nz));
+        work = work +
+               0.5 * kt * ((nx + sx - b->dt * vx) * (sx - nx) + (ny + sy - b->dt * vy) * (sy - ny) + (nz + sz - b->dt * vz) * (sz - nz));
 
         pls_vd_store(b->normal_force + k, fn);
         pls_vd_store(b->shear_force_x + k, fx);

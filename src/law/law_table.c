@@ -15,7 +15,8 @@ pls_status pls_law_table_add_material(pls_law_table *table, const char *name, co
     uint16_t *grown = NULL;
     PLS_TRY(pls_allocate(&grown, (count + 1) * (count + 1), sizeof *grown, "the table of laws"));
     for (size_t a = 0; a <= count; ++a)
-        for (size_t b = 0; b <= count; ++b) grown[a * (count + 1) + b] = a < count && b < count ? table->of_pair[a * count + b] : PLS_NO_LAW;
+        for (size_t b = 0; b <= count; ++b)
+            grown[a * (count + 1) + b] = a < count && b < count ? table->of_pair[a * count + b] : PLS_NO_LAW;
     pls_release(&table->of_pair);
     table->of_pair = grown;
     snprintf(table->material[count].name, sizeof table->material[count].name, "%s", name);
@@ -42,7 +43,8 @@ pls_status pls_law_table_prepare(pls_law_table *table, uint16_t index)
 pls_status pls_law_table_prepare_material(pls_law_table *table, uint16_t material)
 {
     for (size_t k = 0; k < table->law_count; ++k)
-        if (table->law[k].material[0] == material || table->law[k].material[1] == material) PLS_TRY(pls_law_table_prepare(table, (uint16_t)k));
+        if (table->law[k].material[0] == material || table->law[k].material[1] == material)
+            PLS_TRY(pls_law_table_prepare(table, (uint16_t)k));
     return PLS_OK;
 }
 
@@ -50,12 +52,14 @@ pls_status pls_law_table_set(pls_law_table *table, uint16_t a, uint16_t b, const
 {
     if (a >= table->material_count || b >= table->material_count) return pls_fail(PLS_INVALID_ARGUMENT, "a law's material does not exist");
     if (!ops || !ops->prepare || !ops->evaluate || !ops->stiffness || !ops->energy || !ops->parameters)
-        return pls_fail(PLS_INVALID_ARGUMENT, "contact law '%s' lacks one of parameters, prepare, evaluate, stiffness, energy", ops ? ops->name : "");
+        return pls_fail(PLS_INVALID_ARGUMENT, "contact law '%s' lacks one of parameters, prepare, evaluate, stiffness, energy",
+                        ops ? ops->name : "");
     if (ops->api_version != PLS_API_VERSION)
-        return pls_fail(PLS_VERSION, "contact law '%s' is made for API %u, this library has %d: compile it anew", ops->name, ops->api_version, PLS_API_VERSION);
+        return pls_fail(PLS_VERSION, "contact law '%s' is made for API %u, this library has %d: compile it anew", ops->name,
+                        ops->api_version, PLS_API_VERSION);
     if (ops->history < 0 || ops->history > PLS_LAW_MAX_HISTORY || pls_parameter_values(ops->parameters) > PLS_MAX_PARAMETERS)
-        return pls_fail(PLS_INVALID_ARGUMENT, "contact law '%s' wants %d history numbers and %d parameters; at most %d and %d are there", ops->name,
-                        ops->history, pls_parameter_values(ops->parameters), PLS_LAW_MAX_HISTORY, PLS_MAX_PARAMETERS);
+        return pls_fail(PLS_INVALID_ARGUMENT, "contact law '%s' wants %d history numbers and %d parameters; at most %d and %d are there",
+                        ops->name, ops->history, pls_parameter_values(ops->parameters), PLS_LAW_MAX_HISTORY, PLS_MAX_PARAMETERS);
     uint16_t place = pls_law_table_find(table, a, b);
     bool is_new = place == PLS_NO_LAW;
     if (is_new)
@@ -66,8 +70,10 @@ pls_status pls_law_table_set(pls_law_table *table, uint16_t a, uint16_t b, const
     }
     pls_law before = table->law[place], *law = &table->law[place];
     *law = (pls_law){.ops = ops, .material = {a, b}, .lever_at_surface = !is_new && before.lever_at_surface};
-    if (values) memcpy(law->values, values, (size_t)pls_parameter_values(ops->parameters) * sizeof *values);
-    else pls_parameters_default(ops->parameters, law->values);
+    if (values)
+        memcpy(law->values, values, (size_t)pls_parameter_values(ops->parameters) * sizeof *values);
+    else
+        pls_parameters_default(ops->parameters, law->values);
     pls_status status = pls_law_table_prepare(table, place);
     if (status != PLS_OK)
     {

@@ -6,8 +6,7 @@
 
 #include <particls/law.h>
 
-enum
-{
+enum {
     PLS_LINEAR_KN,     ///< normal stiffness [N/m]
     PLS_LINEAR_KS,     ///< shear stiffness [N/m]
     PLS_LINEAR_CN,     ///< normal damping [N s/m]

@@ -4,7 +4,13 @@
 #include "law/linear.h"
 
 static const pls_parameter parameters[] = {
-    {.name = "kn", .unit = "N/m", .meaning = "normal stiffness", .initial = PLS_REQUIRED, .minimum = 0.0, .maximum = INFINITY, .open_minimum = true},
+    {.name = "kn",
+     .unit = "N/m",
+     .meaning = "normal stiffness",
+     .initial = PLS_REQUIRED,
+     .minimum = 0.0,
+     .maximum = INFINITY,
+     .open_minimum = true},
     {.name = "ks", .unit = "N/m", .meaning = "shear stiffness", .initial = 0.0, .minimum = 0.0, .maximum = INFINITY},
     {.name = "cn", .unit = "N s/m", .meaning = "normal damping", .initial = 0.0, .minimum = 0.0, .maximum = INFINITY},
     {.name = "cs", .unit = "N s/m", .meaning = "shear damping", .initial = 0.0, .minimum = 0.0, .maximum = INFINITY},

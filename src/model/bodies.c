@@ -20,10 +20,7 @@ static const column_info columns[] = {
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof columns[0] };
 
-static void **pointer_to(const pls_bodies *bodies, size_t k)
-{
-    return (void **)((char *)(uintptr_t)bodies + columns[k].pointer);
-}
+static void **pointer_to(const pls_bodies *bodies, size_t k) { return (void **)((char *)(uintptr_t)bodies + columns[k].pointer); }
 
 void *pls_bodies_column(const pls_bodies *bodies, int column) { return *pointer_to(bodies, (size_t)column); }
 size_t pls_bodies_row_size(int column) { return columns[column].row_size; }
@@ -77,8 +74,7 @@ pls_status pls_bodies_add_numbered(pls_bodies *bodies, uint32_t number, uint32_t
     if (bodies->row_of[number] != PLS_NO_ROW) return pls_fail(PLS_DUPLICATE, "body %u exists already", number);
     --bodies->removed;
     *row = (uint32_t)bodies->count++;
-    for (size_t k = 0; k < COLUMN_COUNT; ++k)
-        memset((char *)*pointer_to(bodies, k) + *row * columns[k].row_size, 0, columns[k].row_size);
+    for (size_t k = 0; k < COLUMN_COUNT; ++k) memset((char *)*pointer_to(bodies, k) + *row * columns[k].row_size, 0, columns[k].row_size);
     bodies->row_of[number] = *row;
     bodies->generation_of[number] = generation;
     bodies->kind[*row].number = number;
@@ -120,10 +116,7 @@ pls_status pls_bodies_reorder(pls_bodies *bodies, const uint32_t *old_row)
     return PLS_OK;
 }
 
-void pls_bodies_clear(pls_bodies *bodies)
-{
-    bodies->count = bodies->numbers = bodies->removed = 0;
-}
+void pls_bodies_clear(pls_bodies *bodies) { bodies->count = bodies->numbers = bodies->removed = 0; }
 
 void pls_bodies_free(pls_bodies *bodies)
 {

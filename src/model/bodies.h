@@ -79,8 +79,7 @@ typedef struct pls_body_kind
     uint32_t motion;     ///< 1 + index of its motion, 0: none
 } pls_body_kind;
 
-enum pls_body_flags
-{
+enum pls_body_flags {
     PLS_BODY_UNBOUNDED = 1,   ///< a half-space
     PLS_BODY_DRIVEN = 2,      ///< all axes prescribed: no force moves it
     PLS_BODY_SPECIAL = 4,     ///< some axes prescribed, or velocities by function: advanced one by one
@@ -88,42 +87,44 @@ enum pls_body_flags
 };
 
 // X(row type, column)
-#define PLS_BODY_COLUMNS(X)                                                                                                                          \
-    X(pls_body_place, place)                                                                                                                         \
-    X(pls_body_spin, spin)                                                                                                                           \
-    X(pls_body_orientation, orientation)                                                                                                             \
-    X(pls_body_load, load)                                                                                                                           \
-    X(pls_body_before, before) \
-    X(pls_body_mass, mass)                                                                                                                           \
-    X(pls_body_energy, energy) \
-    X(double, scale)                                                                                                                                 \
+#define PLS_BODY_COLUMNS(X)              \
+    X(pls_body_place, place)             \
+    X(pls_body_spin, spin)               \
+    X(pls_body_orientation, orientation) \
+    X(pls_body_load, load)               \
+    X(pls_body_before, before)           \
+    X(pls_body_mass, mass)               \
+    X(pls_body_energy, energy)           \
+    X(double, scale)                     \
     X(pls_body_kind, kind)
 
 // X(name, type, components, flags, unit, column, row type, first member, meaning)
-#define PLS_BODY_FIELDS(X)                                                                                                                           \
-    X("number", PLS_U32, 1, PERSISTS | FRAME | ID, "", kind, pls_body_kind, number, "persistent number of the body")                                 \
-    X("generation", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, generation, "how often the number has been given")                                \
-    X("group", PLS_U32, 1, PERSISTS | FRAME, "", kind, pls_body_kind, group, "entry of the scene it belongs to")                                     \
-    X("shape", PLS_U16, 1, PERSISTS, "", kind, pls_body_kind, shape, "its shape")                                                                    \
-    X("material", PLS_U16, 1, PERSISTS | FRAME, "", kind, pls_body_kind, material, "its material")                                                   \
-    X("flags", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, flags, "how it moves: 1 unbounded, 2 driven, 4 partly driven, 8 anisotropic")          \
-    X("motion", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, motion, "its prescribed motion")                                                      \
-    X("position", PLS_F64, 3, PERSISTS, "m", place, pls_body_place, x, "centre of mass")                                                             \
-    X("radius", PLS_F64, 1, PERSISTS | FRAME, "m", place, pls_body_place, radius, "bounding radius")                                                 \
-    X("velocity", PLS_F64, 3, PERSISTS | FRAME, "m/s", place, pls_body_place, vx, "velocity of the centre of mass")                                  \
-    X("inv_mass", PLS_F64, 1, PERSISTS, "1/kg", load, pls_body_load, inv_mass, "inverse mass, 0 where no force moves it")                          \
-    X("angular_velocity", PLS_F64, 3, PERSISTS | FRAME, "rad/s", spin, pls_body_spin, wx, "angular velocity, world frame")                           \
-    X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", load, pls_body_load, inv_inertia, "inverse moment of isotropic bodies")                     \
-    X("orientation", PLS_F64, 4, PERSISTS | FRAME, "", orientation, pls_body_orientation, w, "unit quaternion w x y z, grain frame to world")        \
-    X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                                                \
-    X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                                     \
+#define PLS_BODY_FIELDS(X)                                                                                                               \
+    X("number", PLS_U32, 1, PERSISTS | FRAME | ID, "", kind, pls_body_kind, number, "persistent number of the body")                     \
+    X("generation", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, generation, "how often the number has been given")                    \
+    X("group", PLS_U32, 1, PERSISTS | FRAME, "", kind, pls_body_kind, group, "entry of the scene it belongs to")                         \
+    X("shape", PLS_U16, 1, PERSISTS, "", kind, pls_body_kind, shape, "its shape")                                                        \
+    X("material", PLS_U16, 1, PERSISTS | FRAME, "", kind, pls_body_kind, material, "its material")                                       \
+    X("flags", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, flags,                                                                     \
+      "how it moves: 1 unbounded, 2 driven, 4 partly driven, 8 anisotropic")                                                             \
+    X("motion", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, motion, "its prescribed motion")                                          \
+    X("position", PLS_F64, 3, PERSISTS, "m", place, pls_body_place, x, "centre of mass")                                                 \
+    X("radius", PLS_F64, 1, PERSISTS | FRAME, "m", place, pls_body_place, radius, "bounding radius")                                     \
+    X("velocity", PLS_F64, 3, PERSISTS | FRAME, "m/s", place, pls_body_place, vx, "velocity of the centre of mass")                      \
+    X("inv_mass", PLS_F64, 1, PERSISTS, "1/kg", load, pls_body_load, inv_mass, "inverse mass, 0 where no force moves it")                \
+    X("angular_velocity", PLS_F64, 3, PERSISTS | FRAME, "rad/s", spin, pls_body_spin, wx, "angular velocity, world frame")               \
+    X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", load, pls_body_load, inv_inertia, "inverse moment of isotropic bodies")         \
+    X("orientation", PLS_F64, 4, PERSISTS | FRAME, "", orientation, pls_body_orientation, w,                                             \
+      "unit quaternion w x y z, grain frame to world")                                                                                   \
+    X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                                    \
+    X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                         \
     X("energy_damped", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, damped, "half of the energy taken by its contacts' dashpots") \
-    X("damping_power", PLS_F64, 1, PERSISTS, "W", energy, pls_body_energy, power, "half of the power taken by its contacts' dashpots") \
-    X("force_before", PLS_F32, 3, PERSISTS, "N", before, pls_body_before, fx, "force one step earlier")                                           \
-    X("torque_before", PLS_F32, 3, PERSISTS, "N m", before, pls_body_before, tx, "torque one step earlier")                                       \
-    X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                                         \
-    X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                                            \
-    X("energy_slid", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, slid, "half of the energy taken by sliding at its contacts") \
+    X("damping_power", PLS_F64, 1, PERSISTS, "W", energy, pls_body_energy, power, "half of the power taken by its contacts' dashpots")   \
+    X("force_before", PLS_F32, 3, PERSISTS, "N", before, pls_body_before, fx, "force one step earlier")                                  \
+    X("torque_before", PLS_F32, 3, PERSISTS, "N m", before, pls_body_before, tx, "torque one step earlier")                              \
+    X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                             \
+    X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                                \
+    X("energy_slid", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, slid, "half of the energy taken by sliding at its contacts")    \
     X("scale", PLS_F64, 1, PERSISTS, "", scale, double, , "multiplies the lengths of its shape")
 
 /// Zero-initialise; `pls_bodies_free` releases.
@@ -135,10 +136,10 @@ typedef struct pls_bodies
 #undef PLS_COLUMN_MEMBER
 
     // by number
-    uint32_t *row_of;         ///< row, UINT32_MAX where there is none
-    uint32_t *generation_of;  ///< generation last given
+    uint32_t *row_of;        ///< row, UINT32_MAX where there is none
+    uint32_t *generation_of; ///< generation last given
     size_t numbers, number_capacity;
-    size_t removed;           ///< numbers without a row
+    size_t removed; ///< numbers without a row
 } pls_bodies;
 
 #define PLS_NO_ROW UINT32_MAX

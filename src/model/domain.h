@@ -7,14 +7,14 @@
 typedef struct pls_domain
 {
     int dimension;
-    double thickness;    ///< of 2D bodies [m]
+    double thickness; ///< of 2D bodies [m]
     bool periodic[3];
     bool any_periodic;
-    double lower[3];     ///< corner that stays in place [m]
-    double edge_start[3];///< edges at t = 0 [m]
-    double rate[3];      ///< d(edge)/dt = edge_start rate, relative rate [1/s]
-    double edge[3];      ///< edges now [m], 0 along axes that are not periodic
-    double edge_rate[3]; ///< d(edge)/dt now [m/s]
+    double lower[3];      ///< corner that stays in place [m]
+    double edge_start[3]; ///< edges at t = 0 [m]
+    double rate[3];       ///< d(edge)/dt = edge_start rate, relative rate [1/s]
+    double edge[3];       ///< edges now [m], 0 along axes that are not periodic
+    double edge_rate[3];  ///< d(edge)/dt now [m/s]
 } pls_domain;
 
 /// Set the edges for time t.

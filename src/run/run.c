@@ -161,13 +161,16 @@ static pls_status begin(pls_run *run)
 /// Steps until somebody looks: an observer, a checkpoint or the end; at most as many as pass in `look_interval`.
 static uint64_t steps_until_look(const pls_run *run, double step_wall)
 {
-    uint64_t step = pls_world_step_number(run->world), most = step_wall > 0.0 ? (uint64_t)fmin(fmax(look_interval / step_wall, 1.0), 64.0) : 1;
+    uint64_t step = pls_world_step_number(run->world),
+             most = step_wall > 0.0 ? (uint64_t)fmin(fmax(look_interval / step_wall, 1.0), 64.0) : 1;
     double dt = pls_world_dt(run->world);
     uint64_t k = 1;
     for (; k < most; ++k)
     {
         double time = (double)(step + k) * dt;
-        if (pls_run_reached(time, dt, run->end) || pls_recorder_due(&run->recorder, step + k, time, dt) || pls_run_checkpoint_due(run, step + k, time, dt)) break;
+        if (pls_run_reached(time, dt, run->end) || pls_recorder_due(&run->recorder, step + k, time, dt) ||
+            pls_run_checkpoint_due(run, step + k, time, dt))
+            break;
     }
     return k;
 }

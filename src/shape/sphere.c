@@ -3,7 +3,13 @@
 #include "shape/builtin.h"
 
 static const pls_parameter parameters[] = {
-    {.name = "radius", .unit = "m", .meaning = "radius", .initial = PLS_REQUIRED, .minimum = 0.0, .maximum = INFINITY, .open_minimum = true},
+    {.name = "radius",
+     .unit = "m",
+     .meaning = "radius",
+     .initial = PLS_REQUIRED,
+     .minimum = 0.0,
+     .maximum = INFINITY,
+     .open_minimum = true},
     {.name = NULL},
 };
 

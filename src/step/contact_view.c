@@ -65,7 +65,8 @@ pls_status pls_contact_view_make(pls_world *world, pls_contact_view *view)
 {
     view->count = 0;
     PLS_TRY(pls_world_prepare(world));
-    if (world->memory_holds) return pls_fail(PLS_INVALID_ARGUMENT, "bodies or laws have changed since the last step; contacts are known again after the next");
+    if (world->memory_holds)
+        return pls_fail(PLS_INVALID_ARGUMENT, "bodies or laws have changed since the last step; contacts are known again after the next");
     const pls_pair_list *list = &world->list;
     PLS_TRY(pls_reserve(&view->entry, &view->capacity, pls_pair_list_touching(list), sizeof *view->entry, "the view of contacts"));
     for (size_t s = 0; s < list->section_count; ++s)

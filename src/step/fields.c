@@ -10,38 +10,37 @@ size_t pls_type_size(pls_type type)
 {
     switch (type)
     {
-    case PLS_F64: return 8;
-    case PLS_F32: return 4;
-    case PLS_U32: return 4;
-    case PLS_U16: return 2;
-    case PLS_U8: return 1;
+        case PLS_F64: return 8;
+        case PLS_F32: return 4;
+        case PLS_U32: return 4;
+        case PLS_U16: return 2;
+        case PLS_U8: return 1;
     }
     return 0;
 }
 
-enum body_columns
-{
+enum body_columns {
 #define COLUMN_NUMBER(type, name) COLUMN_##name,
     PLS_BODY_COLUMNS(COLUMN_NUMBER)
 #undef COLUMN_NUMBER
 };
 
-#define PERSISTS PLS_FIELD_PERSISTS
-#define FRAME PLS_FIELD_FRAME
-#define ID PLS_FIELD_ID
-#define OFFSET_OF(row, member) OFFSET_EMPTY_##row(member)
-#define OFFSET_EMPTY_double(member) 0
-#define OFFSET_EMPTY_pls_body_place(member) offsetof(pls_body_place, member)
-#define OFFSET_EMPTY_pls_body_spin(member) offsetof(pls_body_spin, member)
+#define PERSISTS                                  PLS_FIELD_PERSISTS
+#define FRAME                                     PLS_FIELD_FRAME
+#define ID                                        PLS_FIELD_ID
+#define OFFSET_OF(row, member)                    OFFSET_EMPTY_##row(member)
+#define OFFSET_EMPTY_double(member)               0
+#define OFFSET_EMPTY_pls_body_place(member)       offsetof(pls_body_place, member)
+#define OFFSET_EMPTY_pls_body_spin(member)        offsetof(pls_body_spin, member)
 #define OFFSET_EMPTY_pls_body_orientation(member) offsetof(pls_body_orientation, member)
-#define OFFSET_EMPTY_pls_body_load(member) offsetof(pls_body_load, member)
-#define OFFSET_EMPTY_pls_body_before(member) offsetof(pls_body_before, member)
-#define OFFSET_EMPTY_pls_body_energy(member) offsetof(pls_body_energy, member)
-#define OFFSET_EMPTY_pls_body_mass(member) offsetof(pls_body_mass, member)
-#define OFFSET_EMPTY_pls_body_kind(member) offsetof(pls_body_kind, member)
+#define OFFSET_EMPTY_pls_body_load(member)        offsetof(pls_body_load, member)
+#define OFFSET_EMPTY_pls_body_before(member)      offsetof(pls_body_before, member)
+#define OFFSET_EMPTY_pls_body_energy(member)      offsetof(pls_body_energy, member)
+#define OFFSET_EMPTY_pls_body_mass(member)        offsetof(pls_body_mass, member)
+#define OFFSET_EMPTY_pls_body_kind(member)        offsetof(pls_body_kind, member)
 
 static const pls_field body_fields[] = {
-#define BODY_FIELD(name, type, components, flags, unit, column, row, member, meaning)                                                                \
+#define BODY_FIELD(name, type, components, flags, unit, column, row, member, meaning) \
     {name, type, components, flags, unit, meaning, COLUMN_##column, OFFSET_OF(row, member)},
     PLS_BODY_FIELDS(BODY_FIELD)
 #undef BODY_FIELD
@@ -50,7 +49,8 @@ static const pls_field body_fields[] = {
 typedef struct pls_remembered remembered;
 
 static const pls_field contact_fields[] = {
-    {"body_i", PLS_U32, 1, PERSISTS | ID, "", "number of the body with the lower number (of the body, at a wall)", 0, offsetof(remembered, number_i)},
+    {"body_i", PLS_U32, 1, PERSISTS | ID, "", "number of the body with the lower number (of the body, at a wall)", 0,
+     offsetof(remembered, number_i)},
     {"body_j", PLS_U32, 1, PERSISTS | ID, "", "number of its partner (of the wall)", 0, offsetof(remembered, number_j)},
     {"spring", PLS_F64, 3, PERSISTS, "m", "tangential spring", 0, offsetof(remembered, spring)},
     {"history", PLS_F64, PLS_LAW_MAX_HISTORY, PERSISTS, "", "the law's own numbers", 0, offsetof(remembered, history)},

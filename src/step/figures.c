@@ -8,8 +8,7 @@
 
 #include <string.h>
 
-enum
-{
+enum {
     KINETIC,
     ROTATION,
     POTENTIAL,
@@ -28,7 +27,8 @@ static void add_body(const pls_world *world, uint32_t row, double *sum)
     const pls_body_place *p = &b->place[row];
     const pls_body_mass *m = &b->mass[row];
     const pls_body_orientation *o = &b->orientation[row];
-    pls_vec3 x = pls_vec(p->x, p->y, p->z), v = pls_vec(p->vx, p->vy, p->vz), w = pls_vec(b->spin[row].wx, b->spin[row].wy, b->spin[row].wz);
+    pls_vec3 x = pls_vec(p->x, p->y, p->z), v = pls_vec(p->vx, p->vy, p->vz),
+             w = pls_vec(b->spin[row].wx, b->spin[row].wy, b->spin[row].wz);
     pls_quat q = {o->w, o->x, o->y, o->z};
     pls_vec3 own = pls_rotate_back(q, w), turn = pls_vec(m->ix * own.x, m->iy * own.y, m->iz * own.z);
     pls_vec3 momentum = pls_scale(v, m->mass), angular = pls_add(pls_cross(x, momentum), pls_rotate(q, turn));
@@ -37,7 +37,8 @@ static void add_body(const pls_world *world, uint32_t row, double *sum)
     sum[MOMENTUM] += momentum.x, sum[MOMENTUM + 1] += momentum.y, sum[MOMENTUM + 2] += momentum.z;
     sum[MOMENTUM + 3] += angular.x, sum[MOMENTUM + 4] += angular.y, sum[MOMENTUM + 5] += angular.z;
     for (size_t k = 0; k < world->force_count; ++k)
-        if (world->force[k].ops->potential) sum[POTENTIAL] += world->force[k].ops->potential(world->force[k].context, world->time, x, m->mass);
+        if (world->force[k].ops->potential)
+            sum[POTENTIAL] += world->force[k].ops->potential(world->force[k].context, world->time, x, m->mass);
 }
 
 static pls_status sum_bodies(const pls_world *world, double *total)
@@ -72,7 +73,8 @@ pls_status pls_world_get_figures(pls_world *world, pls_world_figures *f)
                              .energy_slid = sum[SLID],
                              .momentum = {sum[MOMENTUM], sum[MOMENTUM + 1], sum[MOMENTUM + 2]},
                              .angular_momentum = {sum[MOMENTUM + 3], sum[MOMENTUM + 4], sum[MOMENTUM + 5]}};
-    f->body_bytes = pls_bodies_bytes(&world->bodies) + world->list.reference_capacity * (sizeof *world->list.reference + sizeof *world->list.reference_radius) +
+    f->body_bytes = pls_bodies_bytes(&world->bodies) +
+                    world->list.reference_capacity * (sizeof *world->list.reference + sizeof *world->list.reference_radius) +
                     (world->list.pairs.start_capacity + world->list.walls.start_capacity) * sizeof(uint32_t);
     f->contact_bytes = pls_pair_list_bytes(&world->list) + world->memory.capacity * sizeof *world->memory.entry;
     if (world->memory_holds || !world->prepared) return PLS_OK; // forces of contacts are known after a step only

@@ -21,13 +21,32 @@ pls_status pls_body_forces(const pls_world *world, size_t first, size_t last, do
         const pls_body_kind *kind = &world->bodies.kind[first + m];
         in[X][m] = p->x, in[Y][m] = p->y, in[Z][m] = p->z;
         in[VX][m] = p->vx + s->lead_x, in[VY][m] = p->vy + s->lead_y, in[VZ][m] = p->vz + p->lead_z;
-        in[WX][m] = s->end_x, in[WY][m] = s->end_y, in[WZ][m] = s->end_z, in[MASS][m] = world->bodies.mass[first + m].mass, in[RADIUS][m] = p->radius;
+        in[WX][m] = s->end_x, in[WY][m] = s->end_y, in[WZ][m] = s->end_z, in[MASS][m] = world->bodies.mass[first + m].mass,
+        in[RADIUS][m] = p->radius;
         body[m] = kind->number, group[m] = kind->group;
     }
     for (int k = 0; k < 6; ++k) memset(out[k], 0, n * sizeof(double));
-    const pls_force_batch batch = {.count = n, .time = time, .x = in[X], .y = in[Y], .z = in[Z], .vx = in[VX], .vy = in[VY], .vz = in[VZ],
-                                   .wx = in[WX], .wy = in[WY], .wz = in[WZ], .mass = in[MASS], .radius = in[RADIUS], .body = body, .group = group,
-                                   .force_x = out[0], .force_y = out[1], .force_z = out[2], .torque_x = out[3], .torque_y = out[4], .torque_z = out[5]};
+    const pls_force_batch batch = {.count = n,
+                                   .time = time,
+                                   .x = in[X],
+                                   .y = in[Y],
+                                   .z = in[Z],
+                                   .vx = in[VX],
+                                   .vy = in[VY],
+                                   .vz = in[VZ],
+                                   .wx = in[WX],
+                                   .wy = in[WY],
+                                   .wz = in[WZ],
+                                   .mass = in[MASS],
+                                   .radius = in[RADIUS],
+                                   .body = body,
+                                   .group = group,
+                                   .force_x = out[0],
+                                   .force_y = out[1],
+                                   .force_z = out[2],
+                                   .torque_x = out[3],
+                                   .torque_y = out[4],
+                                   .torque_z = out[5]};
     for (size_t k = 0; k < world->force_count; ++k) PLS_TRY(world->force[k].ops->evaluate(world->force[k].context, &batch));
     bool plane = world->def.dimension == 2;
     for (size_t m = 0; m < n; ++m)

@@ -15,10 +15,11 @@ pls_status pls_guard_finite(pls_world *world)
         const pls_body_spin *s = &b->spin[row];
         if (isfinite(p->x + p->y + p->z) && isfinite(p->vx + p->vy + p->vz) && isfinite(s->wx + s->wy + s->wz)) continue;
         return pls_fail(PLS_NOT_A_NUMBER,
-                        "body %u of '%s' has position (%g, %g, %g) m, velocity (%g, %g, %g) m/s, spin (%g, %g, %g) rad/s at t = %g s, step %llu. Likely causes: a time step too "
+                        "body %u of '%s' has position (%g, %g, %g) m, velocity (%g, %g, %g) m/s, spin (%g, %g, %g) rad/s at t = %g s, step "
+                        "%llu. Likely causes: a time step too "
                         "large for the contacts, two bodies at the same place, or a force or law that divides by zero",
-                        number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz, s->wx, s->wy, s->wz,
-                        world->time, (unsigned long long)world->step);
+                        number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz,
+                        s->wx, s->wy, s->wz, world->time, (unsigned long long)world->step);
     }
     return PLS_OK;
 }
@@ -26,12 +27,14 @@ pls_status pls_guard_finite(pls_world *world)
 static pls_status overlap_failure(const pls_world *world, uint32_t i, uint32_t j, double delta, double radius)
 {
     const pls_bodies *b = &world->bodies;
-    return pls_fail(PLS_RUNAWAY_OVERLAP,
-                    "bodies %u of '%s' and %u of '%s' overlap by %g m at t = %g s, step %llu: that is %.3g of the smaller radius %g m, and max_overlap is %g. Likely causes: bodies "
-                    "placed into each other, contacts too soft for the load, or a time step too large. Mend that, or raise guard.max_overlap",
-                    b->kind[i].number, pls_world_group_name(world, (pls_group_id){b->kind[i].group}), b->kind[j].number,
-                    pls_world_group_name(world, (pls_group_id){b->kind[j].group}), delta, world->time, (unsigned long long)world->step, delta / radius, radius,
-                    world->def.max_overlap);
+    return pls_fail(
+        PLS_RUNAWAY_OVERLAP,
+        "bodies %u of '%s' and %u of '%s' overlap by %g m at t = %g s, step %llu: that is %.3g of the smaller radius %g m, and max_overlap "
+        "is %g. Likely causes: bodies "
+        "placed into each other, contacts too soft for the load, or a time step too large. Mend that, or raise guard.max_overlap",
+        b->kind[i].number, pls_world_group_name(world, (pls_group_id){b->kind[i].group}), b->kind[j].number,
+        pls_world_group_name(world, (pls_group_id){b->kind[j].group}), delta, world->time, (unsigned long long)world->step, delta / radius,
+        radius, world->def.max_overlap);
 }
 
 pls_status pls_guard_overlap(pls_world *world)
@@ -48,7 +51,8 @@ pls_status pls_guard_overlap(pls_world *world)
             if (!pls_pair_touches(list, c)) continue;
             const pls_body_place *p = &b->place[list->row_i[c]], *q = &b->place[list->row_j[c]];
             double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius = p->radius;
-            if (section->wall) delta = p->radius + n.x * d[0] + n.y * d[1] + n.z * d[2];
+            if (section->wall)
+                delta = p->radius + n.x * d[0] + n.y * d[1] + n.z * d[2];
             else
             {
                 for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
@@ -75,10 +79,11 @@ static pls_status guard_lost(const pls_world *world)
         if (world->domain.periodic[2]) d.z = 0.0;
         if (pls_length(d) > far_away * world->extent)
             return pls_fail(PLS_LOST_BODY,
-                            "body %u of '%s' is at (%g, %g, %g) m with velocity (%g, %g, %g) m/s at t = %g s, step %llu: %g times the size of the first arrangement away from it. "
+                            "body %u of '%s' is at (%g, %g, %g) m with velocity (%g, %g, %g) m/s at t = %g s, step %llu: %g times the size "
+                            "of the first arrangement away from it. "
                             "Likely causes: a wall is missing, contacts too soft for its speed, or a time step too large",
-                            number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz, world->time,
-                            (unsigned long long)world->step, far_away);
+                            number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz,
+                            world->time, (unsigned long long)world->step, far_away);
     }
     return PLS_OK;
 }

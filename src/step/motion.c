@@ -48,7 +48,8 @@ pls_status pls_find_specials(pls_world *world)
     {
         uint32_t row = bodies->row_of[number];
         if (row == PLS_NO_ROW || !(bodies->kind[row].flags & (PLS_BODY_SPECIAL | PLS_BODY_ANISOTROPIC))) continue;
-        PLS_TRY(pls_reserve(&world->special, &world->special_capacity, world->special_count + 1, sizeof *world->special, "bodies advanced one by one"));
+        PLS_TRY(pls_reserve(&world->special, &world->special_capacity, world->special_count + 1, sizeof *world->special,
+                            "bodies advanced one by one"));
         world->special[world->special_count++] = (pls_special){.row = row};
     }
     world->special_stale = false;
@@ -140,7 +141,10 @@ static void rotate_freely(pls_vec3 momentum, pls_quat *q, const pls_body_mass *m
     *q = pls_quat_unit(*q);
 }
 
-static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m) { return turn_to_world(q, divide(turn_to_body(q, momentum), m)); }
+static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m)
+{
+    return turn_to_world(q, divide(turn_to_body(q, momentum), m));
+}
 
 /// What contacts see of a body within the step (velocity_verlet_simd.c): velocity of the middle and, apart, what leads to that of the end.
 static void show_velocity(pls_bodies *b, uint32_t row, pls_vec3 middle, pls_vec3 end)
@@ -207,7 +211,8 @@ static void drift_driven_spin(pls_world *world, pls_special *s, pls_vec3 w_mid)
     pls_vec3 accelerate_sum = anisotropic ? spin_of(sum, s->orientation, m) : pls_scale(sum, inv);
     s->half_spin = choose(axes, PLS_AXIS_RX, w_mid, pls_add(s->spin, pls_scale(accelerate, 0.5 * dt)));
     set_quat(&b->orientation[s->row], pls_quat_unit(pls_quat_multiply(rotation_by(pls_scale(s->half_spin, dt)), s->orientation)));
-    show_spin(b, s->row, s->half_spin, choose(axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate_sum, 0.25 * dt))));
+    show_spin(b, s->row, s->half_spin,
+              choose(axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate_sum, 0.25 * dt))));
 }
 
 static pls_status drift_driven(pls_world *world, pls_special *s)
@@ -226,7 +231,8 @@ static pls_status drift_driven(pls_world *world, pls_special *s)
     pls_vec3 force = pls_vec(now->fx, now->fy, now->fz), sum = pls_add(force, pls_vec(before->fx, before->fy, before->fz));
     if (motion->about)
     {
-        pls_vec3 arm = turn_to_world(rotation_by(pls_scale(w_mid, dt)), pls_sub(s->position, motion->centre)), end = pls_add(motion->centre, arm);
+        pls_vec3 arm = turn_to_world(rotation_by(pls_scale(w_mid, dt)), pls_sub(s->position, motion->centre)),
+                 end = pls_add(motion->centre, arm);
         set_position(p, end);
         s->driven_velocity = pls_cross(s->driven_spin, arm);
         s->half_velocity = pls_scale(pls_sub(end, s->position), 1.0 / dt);
@@ -245,8 +251,10 @@ pls_status pls_special_drift(pls_world *world)
     for (size_t k = 0; k < world->special_count; ++k)
     {
         pls_special *s = &world->special[k];
-        if (world->bodies.kind[s->row].flags & PLS_BODY_SPECIAL) PLS_TRY(drift_driven(world, s));
-        else drift_anisotropic(world, s);
+        if (world->bodies.kind[s->row].flags & PLS_BODY_SPECIAL)
+            PLS_TRY(drift_driven(world, s));
+        else
+            drift_anisotropic(world, s);
     }
     return PLS_OK;
 }
@@ -270,10 +278,12 @@ void pls_special_finish(pls_world *world)
         else
         {
             pls_vec3 accelerate = (flags & PLS_BODY_ANISOTROPIC) ? spin_of(torque, q, m) : pls_scale(torque, b->load[s->row].inv_inertia);
-            set_spin(&b->spin[s->row], choose(motion->axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate, half))));
+            set_spin(&b->spin[s->row],
+                     choose(motion->axes, PLS_AXIS_RX, s->driven_spin, pls_add(s->half_spin, pls_scale(accelerate, half))));
         }
         if (!(flags & PLS_BODY_SPECIAL)) continue;
         double inv_mass = load->inv_mass;
-        set_velocity(&b->place[s->row], choose(motion->axes, PLS_AXIS_X, s->driven_velocity, pls_add(s->half_velocity, pls_scale(force, half * inv_mass))));
+        set_velocity(&b->place[s->row],
+                     choose(motion->axes, PLS_AXIS_X, s->driven_velocity, pls_add(s->half_velocity, pls_scale(force, half * inv_mass))));
     }
 }

@@ -9,13 +9,13 @@
 
 #include <string.h>
 
-static const double first_skin = 0.2;     ///< of the mean radius, where the search for the best skin starts
-static const double least_skin = 0.02;    ///< of the mean radius
-static const double most_skin = 1.5;      ///< of the mean radius
-static const double first_change = 1.25;  ///< first factor tried; it shrinks towards `last_change`
+static const double first_skin = 0.2;    ///< of the mean radius, where the search for the best skin starts
+static const double least_skin = 0.02;   ///< of the mean radius
+static const double most_skin = 1.5;     ///< of the mean radius
+static const double first_change = 1.25; ///< first factor tried; it shrinks towards `last_change`
 static const double last_change = 1.05;
-static const int builds_per_window = 6;   ///< rebuilds measured before the skin is changed
-static const double window_seconds = 0.2; ///< wall time measured at least
+static const int builds_per_window = 6;      ///< rebuilds measured before the skin is changed
+static const double window_seconds = 0.2;    ///< wall time measured at least
 static const uint64_t builds_per_order = 24; ///< rebuilds between looks at the memory order
 
 static double mean_radius(const pls_world *world)
@@ -43,7 +43,8 @@ static void tune_skin(pls_world *world)
     double mean = mean_radius(world), now = pls_clock();
     if (tuner->skin == 0.0)
     {
-        *tuner = (pls_skin_tuner){.skin = first_skin * mean, .factor = first_change, .last_cost = INFINITY, .since = now, .steps = world->step};
+        *tuner =
+            (pls_skin_tuner){.skin = first_skin * mean, .factor = first_change, .last_cost = INFINITY, .since = now, .steps = world->step};
         return;
     }
     double elapsed = now - tuner->since;
@@ -124,8 +125,10 @@ static double true_drift(const pls_world *world)
         double x = p->x - list->reference[row][0], y = p->y - list->reference[row][1], z = p->z - list->reference[row][2];
         double moved = sqrt(x * x + y * y + z * z);
         if (isfinite(p->radius)) moved += fmax(0.0, p->radius - list->reference_radius[row]);
-        if (moved > largest) second = largest, largest = moved;
-        else if (moved > second) second = moved;
+        if (moved > largest)
+            second = largest, largest = moved;
+        else if (moved > second)
+            second = moved;
     }
     return largest + second + list->image_drift;
 }

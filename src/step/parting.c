@@ -33,7 +33,8 @@ static pls_vec3 slip_of(const pls_world *world, const pls_pair_section *section,
     uint32_t i = world->list.row_i[c], j = world->list.row_j[c];
     const pls_body_place *p = &b->place[i], *q = &b->place[j];
     pls_vec3 n, d = pls_vec(q->x - p->x, q->y - p->y, q->z - p->z), v = pls_vec(p->vx - q->vx, p->vy - q->vy, p->vz - q->vz);
-    if (section->wall) n = pls_scale(pls_wall_normal(&b->orientation[j], world->def.dimension), -1.0);
+    if (section->wall)
+        n = pls_scale(pls_wall_normal(&b->orientation[j], world->def.dimension), -1.0);
     else
     {
         const int16_t none[3] = {0}, *s = world->domain.any_periodic ? world->list.shift[c] : none;

@@ -25,7 +25,8 @@ static pls_status contact_table(pls_world *world, pls_contact_memory *memory)
         memcpy(memory->entry, world->memory.entry, world->memory.count * sizeof *memory->entry);
         memory->count = world->memory.count;
     }
-    else if (world->list.count > 0) PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->laws, memory));
+    else if (world->list.count > 0)
+        PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->laws, memory));
     if (memory->count > 1) qsort(memory->entry, memory->count, sizeof *memory->entry, by_numbers);
     return PLS_OK;
 }
@@ -43,7 +44,8 @@ pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
         return status;
     }
     world->persisting = contacts;
-    *header = (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt, .body_numbers = (double)world->bodies.numbers};
+    *header =
+        (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt, .body_numbers = (double)world->bodies.numbers};
     header->rows[PLS_TABLE_BODIES] = world->bodies.count;
     header->rows[PLS_TABLE_CONTACTS] = contacts->count;
     header->rows[PLS_TABLE_STATES] = world->value_count;
@@ -92,8 +94,10 @@ pls_status pls_persist_get(pls_world *world, pls_table_kind table, const pls_fie
 pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header *header)
 {
     if (header->rows[PLS_TABLE_STATES] != world->value_count)
-        return pls_fail(PLS_CORRUPT, "the saved state holds %llu state values, the scene has %zu", (unsigned long long)header->rows[PLS_TABLE_STATES], world->value_count);
-    if (header->rows[PLS_TABLE_BODIES] >= PLS_NO_ROW || header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || !(header->dt > 0.0) || !isfinite(header->time))
+        return pls_fail(PLS_CORRUPT, "the saved state holds %llu state values, the scene has %zu",
+                        (unsigned long long)header->rows[PLS_TABLE_STATES], world->value_count);
+    if (header->rows[PLS_TABLE_BODIES] >= PLS_NO_ROW || header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || !(header->dt > 0.0) ||
+        !isfinite(header->time))
         return pls_fail(PLS_CORRUPT, "the saved state has an impossible header");
     if (world->bodies.count > 0 && world->extent == 0.0) PLS_TRY(pls_measure_extent(world)); // the first arrangement, not the restored one
     pls_bodies *bodies = &world->bodies;
@@ -139,9 +143,12 @@ static pls_status check_body(const pls_world *world, size_t row)
 {
     const pls_body_kind *kind = &world->bodies.kind[row];
     const pls_body_place *p = &world->bodies.place[row];
-    if (row > 0 && kind->number <= world->bodies.kind[row - 1].number) return pls_fail(PLS_CORRUPT, "the saved bodies are not in order of their numbers");
-    if (kind->shape >= world->shape_count || kind->material >= world->laws.material_count || kind->group > world->group_count || kind->motion > world->motion_count)
-        return pls_fail(PLS_CORRUPT, "saved body %u refers to a shape, material, group or motion that the scene does not have", kind->number);
+    if (row > 0 && kind->number <= world->bodies.kind[row - 1].number)
+        return pls_fail(PLS_CORRUPT, "the saved bodies are not in order of their numbers");
+    if (kind->shape >= world->shape_count || kind->material >= world->laws.material_count || kind->group > world->group_count ||
+        kind->motion > world->motion_count)
+        return pls_fail(PLS_CORRUPT, "saved body %u refers to a shape, material, group or motion that the scene does not have",
+                        kind->number);
     if (!isfinite(p->x + p->y + p->z + p->vx + p->vy + p->vz) || !(p->radius > 0.0))
         return pls_fail(PLS_CORRUPT, "saved body %u has a position, velocity or radius that is no number", kind->number);
     return PLS_OK;

@@ -46,7 +46,8 @@ static pls_status rates(pls_world *world, bool middle, const double *values)
         PLS_TRY(state->def.rate(state->def.context, &at, values + state->first, rate));
         for (int c = 0; c < state->def.components; ++c)
             if (!isfinite(rate[c]))
-                return pls_fail(PLS_NOT_A_NUMBER, "the rate of state '%s' is %g at t = %g s (value %g)", state->def.name, rate[c], at.time, values[state->first + (size_t)c]);
+                return pls_fail(PLS_NOT_A_NUMBER, "the rate of state '%s' is %g at t = %g s (value %g)", state->def.name, rate[c], at.time,
+                                values[state->first + (size_t)c]);
     }
     return PLS_OK;
 }
@@ -69,7 +70,8 @@ static pls_status drive_scale(pls_world *world, const pls_state_instance *state)
     double unit = world->shape[world->bodies.kind[row].shape].radius;
     pls_status status = pls_body_rescale(world, row, state->def.target == PLS_STATE_RADIUS ? value / unit : value, state->def.keep_density);
     if (status != PLS_OK) return pls_fail_context(status, "state '%s': ", state->def.name);
-    if (world->prepared) world->bodies.before[row].growth = (float)(0.5 * (world->bodies.place[row].radius - before)); // springs take the levers of mid-step
+    if (world->prepared)
+        world->bodies.before[row].growth = (float)(0.5 * (world->bodies.place[row].radius - before)); // springs take the levers of mid-step
     world->list.drift += 2.0 * fmax(0.0, world->bodies.place[row].radius - before);
     return PLS_OK;
 }

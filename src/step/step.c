@@ -15,8 +15,7 @@
 #include <omp.h>
 #include <string.h>
 
-enum
-{
+enum {
     GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
     STABLE_STEPS = 4096, ///< steps between looks at the stable step
     SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
@@ -183,7 +182,8 @@ pls_status pls_measure_extent(pls_world *world)
     {
         if (b->kind[row].flags & PLS_BODY_UNBOUNDED) continue;
         const double x[3] = {b->place[row].x, b->place[row].y, b->place[row].z};
-        for (int a = 0; a < 3; ++a) lower[a] = fmin(lower[a], x[a] - b->place[row].radius), upper[a] = fmax(upper[a], x[a] + b->place[row].radius);
+        for (int a = 0; a < 3; ++a)
+            lower[a] = fmin(lower[a], x[a] - b->place[row].radius), upper[a] = fmax(upper[a], x[a] + b->place[row].radius);
     }
     if (!(upper[0] >= lower[0])) return pls_fail(PLS_INVALID_ARGUMENT, "the world has no bounded body; there is nothing to simulate");
     world->centre = pls_vec(0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1]), 0.5 * (lower[2] + upper[2]));

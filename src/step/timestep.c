@@ -23,12 +23,13 @@
 #include <stdio.h>
 #include <string.h>
 
-static const int least_iterations = 12;      ///< of the power method
-static const double slow_growth = 5e-4;       ///< relative growth of the quotient per iteration at which it stops
-static const int iterations = 60;            ///< of the power method; its quotient is then within the margin for packings of any size tried
-static const double quotient_margin = 1.03;  ///< added to the quotient
+static const int least_iterations = 12;     ///< of the power method
+static const double slow_growth = 5e-4;     ///< relative growth of the quotient per iteration at which it stops
+static const int iterations = 60;           ///< of the power method; its quotient is then within the margin for packings of any size tried
+static const double quotient_margin = 1.03; ///< added to the quotient
 static const double near_gap = 0.05;        ///< of the radius: pairs nearer than this count as contacts before the first step
-static const double typical_overlap = 0.01; ///< of the radius: where a law whose stiffness vanishes at zero overlap is asked before grains touch
+static const double typical_overlap =
+    0.01; ///< of the radius: where a law whose stiffness vanishes at zero overlap is asked before grains touch
 
 typedef struct body_rates
 {
@@ -103,7 +104,10 @@ static joint joint_of(const pls_world *world, size_t c)
     t.held = section->wall || b->load[t.j].inv_mass == 0.0;
     const pls_law *law = &world->laws.law[section->law];
     const double zeros[PLS_LAW_MAX_HISTORY] = {0};
-    pls_contact_point point = {.delta = fmax(delta, 0.0), .effective_radius = radius, .effective_mass = 1.0 / (b->load[t.i].inv_mass + b->load[t.j].inv_mass), .history = zeros};
+    pls_contact_point point = {.delta = fmax(delta, 0.0),
+                               .effective_radius = radius,
+                               .effective_mass = 1.0 / (b->load[t.i].inv_mass + b->load[t.j].inv_mass),
+                               .history = zeros};
     law->ops->stiffness(law->constants, &point, &t.k);
     return t;
 }
@@ -136,7 +140,10 @@ static bool typical_contact(const pls_world *world, uint32_t row, pls_contact_st
         if (index == PLS_NO_LAW) continue;
         const pls_law *law = &world->laws.law[index];
         const double zeros[PLS_LAW_MAX_HISTORY] = {0};
-        pls_contact_point point = {.delta = typical_overlap * radius, .effective_radius = 0.5 * radius, .effective_mass = 0.5 * b->mass[row].mass, .history = zeros};
+        pls_contact_point point = {.delta = typical_overlap * radius,
+                                   .effective_radius = 0.5 * radius,
+                                   .effective_mass = 0.5 * b->mass[row].mass,
+                                   .history = zeros};
         pls_contact_stiffness k;
         law->ops->stiffness(law->constants, &point, &k);
         out->kn = fmax(out->kn, k.kn), out->kt = fmax(out->kt, k.kt), out->cn = fmax(out->cn, k.cn), out->ct = fmax(out->ct, k.ct);
@@ -154,7 +161,8 @@ static void add_missing(const pls_world *world, uint32_t row, int coordination, 
     const pls_bodies *b = &world->bodies;
     int d = world->def.dimension;
     double radius = b->place[row].radius, weight = 2.0 * missing;
-    double per_mass = weight / (d * b->mass[row].mass), per_inertia = weight * radius * radius / smallest_moment(&b->mass[row], d) * (d == 2 ? 1.0 : 2.0 / 3.0);
+    double per_mass = weight / (d * b->mass[row].mass),
+           per_inertia = weight * radius * radius / smallest_moment(&b->mass[row], d) * (d == 2 ? 1.0 : 2.0 / 3.0);
     for (int a = 0; a < d; ++a)
     {
         rates->stiffness[7 * a] += per_mass * (k.kn + (d - 1) * k.kt);
@@ -209,8 +217,10 @@ static body_rates rates_of(const pls_world *world, uint32_t row, int coordinatio
     body_rates rates = {.contacts = 0};
     if (!world->memory_holds && list->count > 0)
     {
-        for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k) add_from_list(world, row, list->pairs.entry[k], &rates);
-        for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k) add_from_list(world, row, list->walls.entry[k], &rates);
+        for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k)
+            add_from_list(world, row, list->pairs.entry[k], &rates);
+        for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
+            add_from_list(world, row, list->walls.entry[k], &rates);
     }
     add_missing(world, row, coordination, &rates);
     return rates;
@@ -230,7 +240,11 @@ static void estimate(const pls_world *world, int coordination, pls_step_estimate
         double stiffness = pls_largest_eigenvalue(rates.stiffness, 6), damping = pls_largest_eigenvalue(rates.damping, 6);
         double dt = stable_dt(stiffness, damping);
         if (!(dt < best->dt)) continue;
-        *best = (pls_step_estimate){.dt = dt, .stiffness = stiffness, .damping = damping, .body = number, .contacts = rates.contacts,
+        *best = (pls_step_estimate){.dt = dt,
+                                    .stiffness = stiffness,
+                                    .damping = damping,
+                                    .body = number,
+                                    .contacts = rates.contacts,
                                     .damping_limits = damping > sqrt(stiffness)};
     }
 }
@@ -241,7 +255,8 @@ typedef struct whole
 {
     joint *joint;
     size_t joints;
-    double *missing[2]; ///< per row: what contacts still to come add to translation and rotation, stiffness in [0], damping in [1]; two numbers each
+    double *missing
+        [2]; ///< per row: what contacts still to come add to translation and rotation, stiffness in [0], damping in [1]; two numbers each
     double *root_mass, *root_inertia;
     double *x, *y; ///< six numbers per row
     size_t rows;
@@ -250,8 +265,10 @@ typedef struct whole
 static int contacts_of(const pls_pair_list *list, uint32_t row)
 {
     int count = 0;
-    for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k) count += pls_pair_touches(list, list->pairs.entry[k] >> 1);
-    for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k) count += pls_pair_touches(list, list->walls.entry[k] >> 1);
+    for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k)
+        count += pls_pair_touches(list, list->pairs.entry[k] >> 1);
+    for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
+        count += pls_pair_touches(list, list->walls.entry[k] >> 1);
     return count;
 }
 
@@ -310,7 +327,8 @@ static void multiply_whole(const whole *w, bool damping, int dimension)
         const joint *t = &w->joint[m];
         double kn = damping ? t->k.cn : t->k.kn, kt = damping ? t->k.ct : t->k.kt;
         const double *xi = w->x + 6 * (size_t)t->i, *xj = w->x + 6 * (size_t)t->j;
-        double mi = w->root_mass[t->i], ri = w->root_inertia[t->i] * t->lever_i, mj = w->root_mass[t->j], rj = w->root_inertia[t->j] * t->lever_j;
+        double mi = w->root_mass[t->i], ri = w->root_inertia[t->i] * t->lever_i, mj = w->root_mass[t->j],
+               rj = w->root_inertia[t->j] * t->lever_j;
         pls_vec3 turn = pls_scale(vec_at(xi + 3), ri), u = pls_scale(vec_at(xi), mi);
         if (!t->held)
         {
@@ -363,7 +381,8 @@ static pls_status refine(const pls_world *world, int coordination, pls_step_esti
     pls_status status = whole_make(world, coordination, &w);
     if (status == PLS_OK)
     {
-        double stiffness = largest_of_whole(&w, &world->bodies, false, world->def.dimension), damping = largest_of_whole(&w, &world->bodies, true, world->def.dimension);
+        double stiffness = largest_of_whole(&w, &world->bodies, false, world->def.dimension),
+               damping = largest_of_whole(&w, &world->bodies, true, world->def.dimension);
         double dt = stable_dt(stiffness, damping);
         if (dt > e->dt) e->dt = dt, e->stiffness = stiffness, e->damping = damping, e->damping_limits = damping > sqrt(stiffness);
     }
@@ -395,7 +414,8 @@ static void mark_near(pls_world *world)
                 delta = p->radius + q->radius - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
             }
             unsigned bit = 1u << (c & 7);
-            list->touch[c >> 3] = (uint8_t)(delta > -near_gap * fmin(p->radius, q->radius) ? list->touch[c >> 3] | bit : list->touch[c >> 3] & ~bit);
+            list->touch[c >> 3] =
+                (uint8_t)(delta > -near_gap * fmin(p->radius, q->radius) ? list->touch[c >> 3] | bit : list->touch[c >> 3] & ~bit);
         }
     }
 }
@@ -417,10 +437,14 @@ static pls_status refuse(const pls_world *world, const pls_step_estimate *e)
 {
     char limit[160];
     if (e->damping_limits)
-        snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping, sqrt(e->stiffness));
-    else snprintf(limit, sizeof limit, "its springs limit it: natural frequency %.4g 1/s, damping rate %.4g 1/s", sqrt(e->stiffness), e->damping);
+        snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping,
+                 sqrt(e->stiffness));
+    else
+        snprintf(limit, sizeof limit, "its springs limit it: natural frequency %.4g 1/s, damping rate %.4g 1/s", sqrt(e->stiffness),
+                 e->damping);
     return pls_fail(PLS_UNSTABLE_STEP,
-                    "the time step %g s is larger than the stable step %.4g s at t = %g s. Body %u with %d contacts sets it; %s. Take dt: auto or a smaller dt "
+                    "the time step %g s is larger than the stable step %.4g s at t = %g s. Body %u with %d contacts sets it; %s. Take dt: "
+                    "auto or a smaller dt "
                     "(or time.allow_unstable: true)",
                     world->dt, e->dt, world->time, e->body, e->contacts, limit);
 }
@@ -440,8 +464,7 @@ pls_status pls_choose_step(pls_world *world)
     PLS_TRY(status);
     if (world->dt == 0.0)
     {
-        if (!isfinite(e.dt))
-            return pls_fail(PLS_UNSTABLE_STEP, "no contact law limits the time step, so it cannot be chosen; give dt [s]");
+        if (!isfinite(e.dt)) return pls_fail(PLS_UNSTABLE_STEP, "no contact law limits the time step, so it cannot be chosen; give dt [s]");
         world->dt = world->def.safety * e.dt;
         return PLS_OK;
     }

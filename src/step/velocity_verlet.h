@@ -17,7 +17,7 @@ PLS_SIMD_DECLARE(void, pls_verlet_begin, pls_bodies *bodies, size_t first, size_
 
 /// Forces of contacts gathered in order of partner numbers, added to the given body forces (arrays of 4 per row of the block, or null); second half kick; dissipation booked;
 /// for rows first .. last. With `next` each row begins its next step at once, as pls_verlet_begin does, and that is reported.
-PLS_SIMD_DECLARE(void, pls_verlet_finish, pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
-                 const double *torque, pls_drift_report *next);
+PLS_SIMD_DECLARE(void, pls_verlet_finish, pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt,
+                 const double *force, const double *torque, pls_drift_report *next);
 
 #endif

@@ -42,17 +42,24 @@ static bool finite_vec(pls_vec3 a) { return isfinite(a.x) && isfinite(a.y) && is
 static pls_status check_world_def(const pls_world_def *def)
 {
     PLS_TRY(check_cookie(def->cookie, "pls_default_world_def"));
-    if (def->dimension != 2 && def->dimension != 3) return pls_fail(PLS_INVALID_ARGUMENT, "the dimension is %d; it must be 2 or 3", def->dimension);
-    if (!(def->thickness > 0.0) || !isfinite(def->thickness)) return pls_fail(PLS_INVALID_ARGUMENT, "the thickness is %g m; it must be positive", def->thickness);
-    if (!(def->dt >= 0.0) || !isfinite(def->dt)) return pls_fail(PLS_INVALID_ARGUMENT, "the time step is %g s; it must be positive, or 0 to have it chosen", def->dt);
-    if (!(def->safety > 0.0 && def->safety <= 1.0)) return pls_fail(PLS_INVALID_ARGUMENT, "safety is %g; it must lie in (0, 1]", def->safety);
-    if (!(def->skin >= 0.0) || !isfinite(def->skin)) return pls_fail(PLS_INVALID_ARGUMENT, "the skin is %g m; it must be positive, or 0 to have it tuned", def->skin);
-    if (def->coordination < 0) return pls_fail(PLS_INVALID_ARGUMENT, "the assumed coordination is %d; it must not be negative", def->coordination);
+    if (def->dimension != 2 && def->dimension != 3)
+        return pls_fail(PLS_INVALID_ARGUMENT, "the dimension is %d; it must be 2 or 3", def->dimension);
+    if (!(def->thickness > 0.0) || !isfinite(def->thickness))
+        return pls_fail(PLS_INVALID_ARGUMENT, "the thickness is %g m; it must be positive", def->thickness);
+    if (!(def->dt >= 0.0) || !isfinite(def->dt))
+        return pls_fail(PLS_INVALID_ARGUMENT, "the time step is %g s; it must be positive, or 0 to have it chosen", def->dt);
+    if (!(def->safety > 0.0 && def->safety <= 1.0))
+        return pls_fail(PLS_INVALID_ARGUMENT, "safety is %g; it must lie in (0, 1]", def->safety);
+    if (!(def->skin >= 0.0) || !isfinite(def->skin))
+        return pls_fail(PLS_INVALID_ARGUMENT, "the skin is %g m; it must be positive, or 0 to have it tuned", def->skin);
+    if (def->coordination < 0)
+        return pls_fail(PLS_INVALID_ARGUMENT, "the assumed coordination is %d; it must not be negative", def->coordination);
     if (!(def->max_overlap > 0.0)) return pls_fail(PLS_INVALID_ARGUMENT, "max_overlap is %g; it must be positive", def->max_overlap);
     const double lower[3] = {def->lower.x, def->lower.y, def->lower.z}, upper[3] = {def->upper.x, def->upper.y, def->upper.z};
     for (int a = 0; a < 3; ++a)
         if (def->periodic[a] && !(upper[a] > lower[a] && isfinite(upper[a] - lower[a])))
-            return pls_fail(PLS_INVALID_ARGUMENT, "the periodic box has lower %g m and upper %g m along %c; upper must be larger", lower[a], upper[a], "xyz"[a]);
+            return pls_fail(PLS_INVALID_ARGUMENT, "the periodic box has lower %g m and upper %g m along %c; upper must be larger", lower[a],
+                            upper[a], "xyz"[a]);
     if (def->dimension == 2 && def->periodic[2]) return pls_fail(PLS_INVALID_ARGUMENT, "a 2D world cannot be periodic along z");
     if (!finite_vec(def->stretch_rate)) return pls_fail(PLS_INVALID_ARGUMENT, "the stretch rate is not finite");
     return PLS_OK;
@@ -120,7 +127,8 @@ void pls_world_destroy(pls_world *world)
 static pls_status check_name(const char *name, const char *what)
 {
     if (!name || !name[0]) return pls_fail(PLS_INVALID_ARGUMENT, "%s needs a name", what);
-    if (strlen(name) >= PLS_NAME_SIZE) return pls_fail(PLS_INVALID_ARGUMENT, "the name '%.20s...' is longer than %d letters", name, PLS_NAME_SIZE - 1);
+    if (strlen(name) >= PLS_NAME_SIZE)
+        return pls_fail(PLS_INVALID_ARGUMENT, "the name '%.20s...' is longer than %d letters", name, PLS_NAME_SIZE - 1);
     return PLS_OK;
 }
 
@@ -132,8 +140,10 @@ pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_sha
     if (!ops || !ops->name || !ops->parameters || !ops->sdf || (!ops->unbounded && (!ops->bounding_radius || !ops->mass_properties)))
         return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' lacks one of name, parameters, sdf, bounding_radius, mass_properties", name);
     if (ops->api_version != PLS_API_VERSION)
-        return pls_fail(PLS_VERSION, "shape '%s' is made for API %u, this library has %d: compile it anew", ops->name, ops->api_version, PLS_API_VERSION);
-    if (!(world->def.dimension == 2 ? ops->in_2d : ops->in_3d)) return pls_fail(PLS_INVALID_ARGUMENT, "a %s cannot be used in %dD", ops->name, world->def.dimension);
+        return pls_fail(PLS_VERSION, "shape '%s' is made for API %u, this library has %d: compile it anew", ops->name, ops->api_version,
+                        PLS_API_VERSION);
+    if (!(world->def.dimension == 2 ? ops->in_2d : ops->in_3d))
+        return pls_fail(PLS_INVALID_ARGUMENT, "a %s cannot be used in %dD", ops->name, world->def.dimension);
     if (!ops->unbounded && strcmp(ops->name, "sphere") != 0)
         return pls_fail(PLS_INVALID_ARGUMENT, "there is no contact detection between a '%s' and other bodies", ops->name);
     double defaults[PLS_MAX_PARAMETERS];
@@ -158,7 +168,8 @@ pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_sha
     {
         shape->radius = ops->bounding_radius(shape->values);
         if (!(shape->radius > 0.0) || !isfinite(shape->radius))
-            return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' has bounding radius %g m; it must be positive and finite", name, shape->radius);
+            return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' has bounding radius %g m; it must be positive and finite", name,
+                            shape->radius);
         PLS_TRY(ops->mass_properties(shape->values, world->def.dimension, &shape->properties));
     }
     id->index1 = (uint16_t)++world->shape_count;
@@ -193,7 +204,9 @@ pls_status pls_world_add_group(pls_world *world, const char *name, pls_group_id 
 
 static pls_status check_material(const pls_world *world, pls_material_id id)
 {
-    return id.index1 >= 1 && id.index1 <= world->laws.material_count ? PLS_OK : pls_fail(PLS_INVALID_ARGUMENT, "a material id names no material of this world");
+    return id.index1 >= 1 && id.index1 <= world->laws.material_count
+               ? PLS_OK
+               : pls_fail(PLS_INVALID_ARGUMENT, "a material id names no material of this world");
 }
 
 /// Contacts between two materials begin anew.
@@ -203,7 +216,8 @@ static void forget_contacts(pls_world *world, uint16_t a, uint16_t b)
     for (size_t k = 0; k < world->memory.count; ++k)
     {
         struct pls_remembered *entry = &world->memory.entry[k];
-        uint16_t i = world->bodies.kind[world->bodies.row_of[entry->number_i]].material, j = world->bodies.kind[world->bodies.row_of[entry->number_j]].material;
+        uint16_t i = world->bodies.kind[world->bodies.row_of[entry->number_i]].material,
+                 j = world->bodies.kind[world->bodies.row_of[entry->number_j]].material;
         if (!((i == a && j == b) || (i == b && j == a))) world->memory.entry[kept++] = *entry;
     }
     world->memory.count = kept;
@@ -226,7 +240,8 @@ static pls_status find_law(const pls_world *world, pls_material_id a, pls_materi
     PLS_TRY(check_material(world, b));
     *index = pls_law_table_find(&world->laws, (uint16_t)(a.index1 - 1), (uint16_t)(b.index1 - 1));
     if (*index == PLS_NO_LAW)
-        return pls_fail(PLS_NOT_FOUND, "there is no law between '%s' and '%s'", world->laws.material[a.index1 - 1].name, world->laws.material[b.index1 - 1].name);
+        return pls_fail(PLS_NOT_FOUND, "there is no law between '%s' and '%s'", world->laws.material[a.index1 - 1].name,
+                        world->laws.material[b.index1 - 1].name);
     return PLS_OK;
 }
 
@@ -276,14 +291,17 @@ pls_status pls_world_set_material_value(pls_world *world, pls_material_id materi
 
 static pls_status add_binding(pls_world *world, const pls_binding *binding)
 {
-    pls_status status = pls_reserve(&world->binding, &world->binding_capacity, world->binding_count + 1, sizeof *world->binding, "bound parameters");
-    if (status == PLS_OK) world->binding[world->binding_count++] = *binding;
-    else if (binding->destroy) binding->destroy(binding->context);
+    pls_status status =
+        pls_reserve(&world->binding, &world->binding_capacity, world->binding_count + 1, sizeof *world->binding, "bound parameters");
+    if (status == PLS_OK)
+        world->binding[world->binding_count++] = *binding;
+    else if (binding->destroy)
+        binding->destroy(binding->context);
     return status;
 }
 
-pls_status pls_world_bind_law_parameter(pls_world *world, pls_material_id a, pls_material_id b, const char *name, pls_parameter_function *function,
-                                        void *context, void (*destroy)(void *))
+pls_status pls_world_bind_law_parameter(pls_world *world, pls_material_id a, pls_material_id b, const char *name,
+                                        pls_parameter_function *function, void *context, void (*destroy)(void *))
 {
     pls_binding binding = {.function = function, .context = context, .destroy = destroy, .a = a.index1, .b = b.index1};
     uint16_t index;
@@ -299,8 +317,8 @@ pls_status pls_world_bind_law_parameter(pls_world *world, pls_material_id a, pls
     return add_binding(world, &binding);
 }
 
-pls_status pls_world_bind_material_value(pls_world *world, pls_material_id material, const char *name, pls_parameter_function *function, void *context,
-                                         void (*destroy)(void *))
+pls_status pls_world_bind_material_value(pls_world *world, pls_material_id material, const char *name, pls_parameter_function *function,
+                                         void *context, void (*destroy)(void *))
 {
     pls_binding binding = {.function = function, .context = context, .destroy = destroy, .a = material.index1, .of_material = true};
     pls_material_values probe = {0};
@@ -322,8 +340,10 @@ pls_status pls_world_add_force(pls_world *world, const pls_force_ops *ops, void 
     pls_status status = PLS_OK;
     if (!ops || !ops->evaluate) return pls_fail(PLS_INVALID_ARGUMENT, "a force needs evaluate");
     if (ops->api_version != PLS_API_VERSION)
-        status = pls_fail(PLS_VERSION, "force '%s' is made for API %u, this library has %d: compile it anew", ops->name, ops->api_version, PLS_API_VERSION);
-    if (status == PLS_OK) status = pls_reserve(&world->force, &world->force_capacity, world->force_count + 1, sizeof *world->force, "body forces");
+        status = pls_fail(PLS_VERSION, "force '%s' is made for API %u, this library has %d: compile it anew", ops->name, ops->api_version,
+                          PLS_API_VERSION);
+    if (status == PLS_OK)
+        status = pls_reserve(&world->force, &world->force_capacity, world->force_count + 1, sizeof *world->force, "body forces");
     if (status != PLS_OK)
     {
         if (ops->destroy) ops->destroy(context);
@@ -351,11 +371,14 @@ static pls_status check_state(pls_world *world, const pls_state_def *def)
     PLS_TRY(check_name(def->name, "a state"));
     if (pls_world_find_state(world, def->name).index1) return pls_fail(PLS_DUPLICATE, "there is a state '%s' already", def->name);
     if (def->components < 1 || def->components > PLS_STATE_MAX_COMPONENTS)
-        return pls_fail(PLS_INVALID_ARGUMENT, "state '%s' has %d components; it must have 1 to %d", def->name, def->components, PLS_STATE_MAX_COMPONENTS);
+        return pls_fail(PLS_INVALID_ARGUMENT, "state '%s' has %d components; it must have 1 to %d", def->name, def->components,
+                        PLS_STATE_MAX_COMPONENTS);
     if (!def->rate) return pls_fail(PLS_INVALID_ARGUMENT, "state '%s' has no rate", def->name);
     bool has_body = def->body.index1 != 0;
-    if (has_body && pls_body_row(world, def->body) == PLS_NO_ROW) return pls_fail(PLS_STALE_ID, "the body of state '%s' does not exist", def->name);
-    if (def->target != PLS_STATE_FREE && !has_body) return pls_fail(PLS_INVALID_ARGUMENT, "state '%s' drives a scale but has no body", def->name);
+    if (has_body && pls_body_row(world, def->body) == PLS_NO_ROW)
+        return pls_fail(PLS_STALE_ID, "the body of state '%s' does not exist", def->name);
+    if (def->target != PLS_STATE_FREE && !has_body)
+        return pls_fail(PLS_INVALID_ARGUMENT, "state '%s' drives a scale but has no body", def->name);
     for (int c = 0; c < def->components; ++c)
         if (!isfinite(def->initial[c])) return pls_fail(PLS_INVALID_ARGUMENT, "state '%s' starts from %g", def->name, def->initial[c]);
     PLS_TRY(pls_reserve(&world->state, &world->state_capacity, world->state_count + 1, sizeof *world->state, "states"));
@@ -391,18 +414,22 @@ uint32_t pls_body_row(const pls_world *world, pls_body_id id)
 static pls_status check_body_def(const pls_world *world, const pls_body_def *def)
 {
     PLS_TRY(check_cookie(def->cookie, "pls_default_body_def"));
-    if (def->shape.index1 < 1 || def->shape.index1 > world->shape_count) return pls_fail(PLS_INVALID_ARGUMENT, "a body needs a shape of this world");
+    if (def->shape.index1 < 1 || def->shape.index1 > world->shape_count)
+        return pls_fail(PLS_INVALID_ARGUMENT, "a body needs a shape of this world");
     PLS_TRY(check_material(world, def->material));
     if (def->group.index1 > world->group_count) return pls_fail(PLS_INVALID_ARGUMENT, "a body's group does not exist");
     if (!finite_vec(def->position) || !finite_vec(def->velocity) || !finite_vec(def->angular_velocity))
         return pls_fail(PLS_INVALID_ARGUMENT, "a body's position or velocity is not finite");
-    if (!(def->scale > 0.0) || !isfinite(def->scale)) return pls_fail(PLS_INVALID_ARGUMENT, "a body's scale is %g; it must be positive", def->scale);
+    if (!(def->scale > 0.0) || !isfinite(def->scale))
+        return pls_fail(PLS_INVALID_ARGUMENT, "a body's scale is %g; it must be positive", def->scale);
     const pls_quat *q = &def->orientation;
     double norm = q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z;
-    if (!(fabs(norm - 1.0) < 1e-6)) return pls_fail(PLS_INVALID_ARGUMENT, "a body's orientation has length %g; it must be a unit quaternion", sqrt(norm));
+    if (!(fabs(norm - 1.0) < 1e-6))
+        return pls_fail(PLS_INVALID_ARGUMENT, "a body's orientation has length %g; it must be a unit quaternion", sqrt(norm));
     if (world->def.dimension == 2)
     {
-        if (def->position.z != 0.0 || def->velocity.z != 0.0 || def->angular_velocity.x != 0.0 || def->angular_velocity.y != 0.0 || q->x != 0.0 || q->y != 0.0)
+        if (def->position.z != 0.0 || def->velocity.z != 0.0 || def->angular_velocity.x != 0.0 || def->angular_velocity.y != 0.0 ||
+            q->x != 0.0 || q->y != 0.0)
             return pls_fail(PLS_INVALID_ARGUMENT, "in 2D bodies lie in the x-y plane and turn about z");
     }
     const pls_motion_def *m = &def->motion;
@@ -425,19 +452,23 @@ static pls_status body_mass(const pls_world *world, const pls_body_def *def, pls
     double density = material->values.density * world->domain.thickness, s = def->scale;
     double volume_scale = world->def.dimension == 2 ? s * s : s * s * s;
     double mass = isnan(def->mass) ? density * shape->properties.volume * volume_scale : def->mass;
-    if (isnan(mass)) return pls_fail(PLS_INVALID_ARGUMENT, "material '%s' has no density, and a body of it has no mass of its own", material->name);
+    if (isnan(mass))
+        return pls_fail(PLS_INVALID_ARGUMENT, "material '%s' has no density, and a body of it has no mass of its own", material->name);
     if (!(mass > 0.0) || !isfinite(mass)) return pls_fail(PLS_INVALID_ARGUMENT, "a body has mass %g kg; it must be positive", mass);
     double per_mass = s * s / shape->properties.volume; // moments of the shape as they are at this mass
     pls_vec3 from_shape = pls_scale(shape->properties.inertia, mass * per_mass);
-    *out = (pls_body_mass){mass, isnan(def->inertia.x) ? from_shape.x : def->inertia.x, isnan(def->inertia.y) ? from_shape.y : def->inertia.y,
-                           isnan(def->inertia.z) ? from_shape.z : def->inertia.z};
+    *out = (pls_body_mass){mass, isnan(def->inertia.x) ? from_shape.x : def->inertia.x,
+                           isnan(def->inertia.y) ? from_shape.y : def->inertia.y, isnan(def->inertia.z) ? from_shape.z : def->inertia.z};
     bool wrong = !(out->iz > 0.0) || (world->def.dimension == 3 && (!(out->ix > 0.0) || !(out->iy > 0.0)));
-    if (wrong) return pls_fail(PLS_INVALID_ARGUMENT, "a body has moments of inertia %g, %g, %g kg m^2; they must be positive", out->ix, out->iy, out->iz);
+    if (wrong)
+        return pls_fail(PLS_INVALID_ARGUMENT, "a body has moments of inertia %g, %g, %g kg m^2; they must be positive", out->ix, out->iy,
+                        out->iz);
     if (world->def.dimension == 3)
     {
         double largest = fmax(out->ix, fmax(out->iy, out->iz));
         if (2.0 * largest > (out->ix + out->iy + out->iz) * (1.0 + 1e-12))
-            return pls_fail(PLS_INVALID_ARGUMENT, "moments of inertia %g, %g, %g kg m^2 belong to no body: the largest exceeds the sum of the others", out->ix,
+            return pls_fail(PLS_INVALID_ARGUMENT,
+                            "moments of inertia %g, %g, %g kg m^2 belong to no body: the largest exceeds the sum of the others", out->ix,
                             out->iy, out->iz);
     }
     return PLS_OK;
@@ -453,7 +484,8 @@ static uint32_t motion_flags(const pls_world *world, const pls_body_def *def, co
     if (axes == PLS_AXIS_ALL) flags |= PLS_BODY_DRIVEN;
     bool turns = m->angular_velocity.x != 0.0 || m->angular_velocity.y != 0.0 || m->angular_velocity.z != 0.0;
     if (m->axes && (axes != PLS_AXIS_ALL || m->function || m->about || turns)) flags |= PLS_BODY_SPECIAL;
-    if (world->def.dimension == 3 && !(flags & PLS_BODY_DRIVEN) && !(mass->ix == mass->iy && mass->iy == mass->iz)) flags |= PLS_BODY_ANISOTROPIC;
+    if (world->def.dimension == 3 && !(flags & PLS_BODY_DRIVEN) && !(mass->ix == mass->iy && mass->iy == mass->iz))
+        flags |= PLS_BODY_ANISOTROPIC;
     return flags;
 }
 
@@ -463,7 +495,8 @@ static pls_status add_body(pls_world *world, const pls_body_def *def, pls_body_i
     PLS_TRY(check_body_def(world, def));
     PLS_TRY(body_mass(world, def, &mass));
     bool has_motion = def->motion.axes != 0;
-    if (has_motion) PLS_TRY(pls_reserve(&world->motion, &world->motion_capacity, world->motion_count + 1, sizeof *world->motion, "motions"));
+    if (has_motion)
+        PLS_TRY(pls_reserve(&world->motion, &world->motion_capacity, world->motion_count + 1, sizeof *world->motion, "motions"));
     PLS_TRY(pls_neighbours_detach(world));
     pls_bodies *bodies = &world->bodies;
     uint32_t row;
@@ -474,7 +507,8 @@ static pls_status add_body(pls_world *world, const pls_body_def *def, pls_body_i
     const pls_shape_instance *shape = &world->shape[def->shape.index1 - 1];
     double inv_mass = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED)) ? 0.0 : 1.0 / mass.mass;
     double inv_inertia = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED | PLS_BODY_ANISOTROPIC)) ? 0.0 : 1.0 / mass.iz;
-    bodies->place[row] = (pls_body_place){def->position.x, def->position.y, def->position.z, shape->radius * def->scale, v.x, v.y, v.z, 0.0};
+    bodies->place[row] =
+        (pls_body_place){def->position.x, def->position.y, def->position.z, shape->radius * def->scale, v.x, v.y, v.z, 0.0};
     bodies->load[row] = (pls_body_load){.inv_mass = inv_mass, .inv_inertia = inv_inertia};
     bodies->spin[row] = (pls_body_spin){.wx = w.x, .wy = w.y, .wz = w.z};
     pls_quat q = pls_quat_unit(def->orientation);
@@ -532,7 +566,8 @@ pls_status pls_body_rescale(pls_world *world, uint32_t row, double scale, bool k
 {
     pls_bodies *bodies = &world->bodies;
     if (!(scale > 0.0) || !isfinite(scale))
-        return pls_fail(PLS_INVALID_ARGUMENT, "body %u would get scale %g at t = %g s; it must stay positive", bodies->kind[row].number, scale, world->time);
+        return pls_fail(PLS_INVALID_ARGUMENT, "body %u would get scale %g at t = %g s; it must stay positive", bodies->kind[row].number,
+                        scale, world->time);
     double ratio = scale / bodies->scale[row];
     if (ratio == 1.0) return PLS_OK;
     bodies->scale[row] = scale;
@@ -556,7 +591,10 @@ uint64_t pls_world_step_number(const pls_world *world) { return world->step; }
 double pls_world_dt(const pls_world *world) { return world->dt; }
 int pls_world_dimension(const pls_world *world) { return world->def.dimension; }
 size_t pls_world_body_count(const pls_world *world) { return world->bodies.count; }
-size_t pls_world_contact_count(const pls_world *world) { return world->memory_holds ? world->memory.count : pls_pair_list_touching(&world->list); }
+size_t pls_world_contact_count(const pls_world *world)
+{
+    return world->memory_holds ? world->memory.count : pls_pair_list_touching(&world->list);
+}
 
 const uint32_t *pls_world_rows_by_number(const pls_world *world, size_t *count)
 {

@@ -39,7 +39,7 @@ typedef struct pls_binding
     pls_parameter_function *function;
     void *context;
     void (*destroy)(void *);
-    uint16_t a, b;  ///< materials of the law; a: the material whose value follows, if `of_material`
+    uint16_t a, b; ///< materials of the law; a: the material whose value follows, if `of_material`
     bool of_material;
     char name[PLS_NAME_SIZE];
 } pls_binding;
@@ -51,20 +51,20 @@ typedef struct pls_special
     pls_vec3 position, velocity, spin; ///< at the start of the step
     pls_quat orientation;
     pls_body_before before;
-    pls_vec3 half_velocity; ///< u of velocity_verlet_simd.c
-    pls_vec3 half_spin;     ///< the same of rotation; for anisotropic bodies the angular momentum
+    pls_vec3 half_velocity;                ///< u of velocity_verlet_simd.c
+    pls_vec3 half_spin;                    ///< the same of rotation; for anisotropic bodies the angular momentum
     pls_vec3 driven_velocity, driven_spin; ///< at the end of the step
 } pls_special;
 
 /// The skin's search for the cheapest value.
 typedef struct pls_skin_tuner
 {
-    double skin;       ///< in use [m]
-    double factor;     ///< next change
-    double last_cost;  ///< wall time per step with the last value [s]
-    double since;      ///< clock at the start of the window [s]
-    uint64_t steps;    ///< in the window
-    int builds;        ///< in the window
+    double skin;      ///< in use [m]
+    double factor;    ///< next change
+    double last_cost; ///< wall time per step with the last value [s]
+    double since;     ///< clock at the start of the window [s]
+    uint64_t steps;   ///< in the window
+    int builds;       ///< in the window
 } pls_skin_tuner;
 
 struct pls_world
@@ -93,20 +93,20 @@ struct pls_world
     bool memory_holds;         ///< `memory`, not the list, has the contacts (between a change of bodies and the next list)
     struct pls_parted *parted; ///< contacts that ended in this step
     size_t parted_capacity;
-    pls_contact_work *work;    ///< one per thread
+    pls_contact_work *work; ///< one per thread
     int work_count;
     pls_skin_tuner tuner;
     pls_special *special;
     size_t special_count, special_capacity;
     bool special_stale;
 
-    double dt;         ///< 0 until chosen
-    uint64_t step;     ///< steps done
-    double time;       ///< step * dt
+    double dt;     ///< 0 until chosen
+    uint64_t step; ///< steps done
+    double time;   ///< step * dt
     bool prepared;
-    double extent;     ///< size of the first arrangement [m], for lost bodies; 0 until measured
-    pls_vec3 centre;   ///< of the first arrangement [m]
-    void *persisting;  ///< contact table while persist.c reads it
+    double extent;    ///< size of the first arrangement [m], for lost bodies; 0 until measured
+    pls_vec3 centre;  ///< of the first arrangement [m]
+    void *persisting; ///< contact table while persist.c reads it
 };
 
 // motion.c

@@ -56,7 +56,7 @@ Impacts start at many phases of the time grid, because a contact law has a kink,
 
 | | |
 |---|---|
-| version | $(sed -n 's/^#define PLS_VERSION_TEXT "\(.*\)"/\1/p' "$root/include/particls/types.h") |
+| version | $(sed -n 's/^#define PLS_VERSION_TEXT *"\(.*\)"/\1/p' "$root/include/particls/types.h") |
 | processor | $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1) |
 | took | $((known - start)) s, the compression $((ended - known)) s |
 
