@@ -17,8 +17,7 @@
 
 #include <string.h>
 
-enum
-{
+enum {
     MAX_LEVELS = 32,
     LOOK_BLOCK = 512 ///< bodies per block of the search
 };
@@ -158,9 +157,10 @@ static pls_status assign_levels(grids *g, double gap)
     for (int a = 0; a < 3; ++a)
         if (g->domain->periodic[a] && g->domain->edge[a] < 4.0 * g->reach_max)
             return pls_fail(PLS_LIMIT_EXCEEDED,
-                            "the periodic box is %g m wide along %c; it must be at least %g m: two largest diameters plus the skin, so that a body never meets two images "
+                            "the periodic box is %g m wide along %c; it must be at least %g m: two largest diameters plus the skin, so "
+                            "that a body never meets two images "
                             "of another. Make the box wider or that axis not periodic",
-                            g->domain->edge[a], "xyz"[a], 4.0 * g->reach_max);
+                            g->domain->edge[a], "xyz"[a], 4.0 * g -> reach_max);
     for (size_t row = 0; row < bodies->count; ++row)
     {
         if (bodies->kind[row].flags & PLS_BODY_UNBOUNDED)
@@ -286,8 +286,9 @@ static pls_status look_around(const grids *g, look_buffer *out, const packed_bod
     for (int64_t z = from[2]; z <= to[2]; ++z)
         for (int64_t y = from[1]; y <= to[1]; ++y)
         {
-            size_t base = level->cell_start + ((size_t)wrap_cell(z, level->cells[2]) * (size_t)level->cells[1] + (size_t)wrap_cell(y, level->cells[1])) *
-                                                  (size_t)level->cells[0];
+            size_t base = level->cell_start +
+                          ((size_t)wrap_cell(z, level->cells[2]) * (size_t)level->cells[1] + (size_t)wrap_cell(y, level->cells[1])) *
+                              (size_t)level->cells[0];
             for (int64_t x = from[0]; x <= to[0]; ++x)
             {
                 size_t cell = base + (size_t)wrap_cell(x, level->cells[0]);
@@ -301,8 +302,10 @@ static pls_status look_around(const grids *g, look_buffer *out, const packed_bod
                         d[c] = b->x[c] - a->x[c];
                         if (edge[c] > 0.0) // nearest image; the box is wider than two ranges, so there is one only
                         {
-                            if (d[c] > 0.5 * edge[c]) d[c] -= edge[c], step[c] = -1;
-                            else if (d[c] < -0.5 * edge[c]) d[c] += edge[c], step[c] = 1;
+                            if (d[c] > 0.5 * edge[c])
+                                d[c] -= edge[c], step[c] = -1;
+                            else if (d[c] < -0.5 * edge[c])
+                                d[c] += edge[c], step[c] = 1;
                         }
                         square += d[c] * d[c];
                     }
@@ -331,7 +334,8 @@ static pls_status order_pairs(const grids *g, const look_buffer *buffer, size_t 
 {
     size_t total = 0, rows = g->bodies->count;
     for (size_t b = 0; b < blocks; ++b) total += buffer[b].count;
-    if (total >= UINT32_MAX / 2) return pls_fail(PLS_LIMIT_EXCEEDED, "%zu near pairs are more than the %u the pair list can hold", total, UINT32_MAX / 2);
+    if (total >= UINT32_MAX / 2)
+        return pls_fail(PLS_LIMIT_EXCEEDED, "%zu near pairs are more than the %u the pair list can hold", total, UINT32_MAX / 2);
     PLS_TRY(pls_reserve(&pairs->pair, &pairs->capacity, total, sizeof *pairs->pair, "near pairs"));
     uint32_t *start = NULL;
     PLS_TRY(pls_allocate(&start, rows + 2, sizeof *start, "ordering near pairs"));

@@ -42,7 +42,8 @@ size_t pls_pair_list_touching(const pls_pair_list *list)
     return count;
 }
 
-pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, pls_contact_memory *memory)
+pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws,
+                                  pls_contact_memory *memory)
 {
     memory->count = 0;
     PLS_TRY(pls_contact_memory_reserve(memory, pls_pair_list_touching(list)));
@@ -71,13 +72,15 @@ static pls_status missing_law(const pls_bodies *bodies, const pls_law_table *law
 {
     const char *a = laws->material[bodies->kind[i].material].name, *b = laws->material[bodies->kind[j].material].name;
     return pls_fail(PLS_NOT_FOUND,
-                    "bodies %u and %u come close, but no contact law is given between their materials '%s' and '%s'. Add one: contact: [{between: [%s, %s], law: ...}]",
+                    "bodies %u and %u come close, but no contact law is given between their materials '%s' and '%s'. Add one: contact: "
+                    "[{between: [%s, %s], law: ...}]",
                     bodies->kind[i].number, bodies->kind[j].number, a, b, a, b);
 }
 
 static pls_status add_section(pls_pair_list *list, const pls_law_table *laws, uint16_t law, bool wall, uint32_t wall_row, size_t count)
 {
-    PLS_TRY(pls_reserve(&list->section, &list->section_capacity, list->section_count + 1, sizeof *list->section, "sections of the pair list"));
+    PLS_TRY(
+        pls_reserve(&list->section, &list->section_capacity, list->section_count + 1, sizeof *list->section, "sections of the pair list"));
     pls_pair_section *section = &list->section[list->section_count++];
     *section = (pls_pair_section){.wall = wall, .wall_row = wall_row, .law = law, .depth = INFINITY, .first = list->count, .count = count};
     section->stride = laws->law[law].ops->history > 1 ? 2 * PLS_SPRING_STRIDE : PLS_SPRING_STRIDE;
@@ -87,7 +90,8 @@ static pls_status add_section(pls_pair_list *list, const pls_law_table *laws, ui
 }
 
 /// Count sphere pairs per law and lay out their sections; `next` of a law becomes its first candidate.
-static pls_status pair_sections(pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, const pls_near_pairs *near, size_t *next)
+static pls_status pair_sections(pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, const pls_near_pairs *near,
+                                size_t *next)
 {
     for (size_t k = 0; k < near->count; ++k)
     {
@@ -113,8 +117,8 @@ typedef struct wall_pairs
 } wall_pairs;
 
 /// Bodies near one wall, one section per law.
-static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double gap, uint32_t wall,
-                           wall_pairs *found)
+static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double gap,
+                           uint32_t wall, wall_pairs *found)
 {
     pls_vec3 n = pls_wall_normal(&bodies->orientation[wall], domain->dimension);
     const pls_body_place *w = &bodies->place[wall];
@@ -129,11 +133,13 @@ static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const 
             const pls_body_place *p = &bodies->place[row];
             double height = n.x * (p->x - w->x) + n.y * (p->y - w->y) + n.z * (p->z - w->z);
             if (!(height < p->radius + gap) || (bodies->kind[row].flags & PLS_BODY_UNBOUNDED)) continue;
-            if (bodies->load[row].inv_mass == 0.0 && bodies->load[wall].inv_mass == 0.0 && !(bodies->kind[row].flags & PLS_BODY_SPECIAL)) continue;
+            if (bodies->load[row].inv_mass == 0.0 && bodies->load[wall].inv_mass == 0.0 && !(bodies->kind[row].flags & PLS_BODY_SPECIAL))
+                continue;
             uint16_t its = pls_law_table_find(laws, bodies->kind[row].material, bodies->kind[wall].material);
             if (its == PLS_NO_LAW) return missing_law(bodies, laws, (uint32_t)row, wall);
             if (its != law) continue;
-            if (found->count == found->capacity) PLS_TRY(pls_reserve(&found->row, &found->capacity, found->count + 1024, sizeof *found->row, "pairs of bodies and walls"));
+            if (found->count == found->capacity)
+                PLS_TRY(pls_reserve(&found->row, &found->capacity, found->count + 1024, sizeof *found->row, "pairs of bodies and walls"));
             found->row[found->count++] = (uint32_t)row;
         }
         if (found->count > first) PLS_TRY(add_section(list, laws, (uint16_t)law, true, wall, found->count - first));
@@ -141,13 +147,15 @@ static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const 
     return PLS_OK;
 }
 
-static pls_status wall_sections(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double gap, wall_pairs *found)
+static pls_status wall_sections(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
+                                double gap, wall_pairs *found)
 {
     list->wall_first = list->count;
     for (uint32_t number = 0; number < bodies->numbers; ++number) // in order of numbers: sections do not depend on memory order
     {
         uint32_t row = bodies->row_of[number];
-        if (row != PLS_NO_ROW && (bodies->kind[row].flags & PLS_BODY_UNBOUNDED)) PLS_TRY(one_wall(list, bodies, domain, laws, gap, row, found));
+        if (row != PLS_NO_ROW && (bodies->kind[row].flags & PLS_BODY_UNBOUNDED))
+            PLS_TRY(one_wall(list, bodies, domain, laws, gap, row, found));
     }
     return PLS_OK;
 }
@@ -155,7 +163,8 @@ static pls_status wall_sections(pls_pair_list *list, const pls_bodies *bodies, c
 static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
 {
     size_t history = 0, count = list->count;
-    if (count >= UINT32_MAX / 2) return pls_fail(PLS_LIMIT_EXCEEDED, "%zu pairs are more than the %u the pair list can hold", count, UINT32_MAX / 2);
+    if (count >= UINT32_MAX / 2)
+        return pls_fail(PLS_LIMIT_EXCEEDED, "%zu pairs are more than the %u the pair list can hold", count, UINT32_MAX / 2);
     for (size_t s = 0; s < list->section_count; ++s)
     {
         list->section[s].history = history;
@@ -186,7 +195,8 @@ static pls_status cut_blocks(pls_pair_list *list)
     {
         const pls_pair_section *section = &list->section[s];
         size_t blocks = pls_block_count(section->count, PLS_CONTACT_BLOCK);
-        PLS_TRY(pls_reserve(&list->block, &list->block_capacity, list->block_count + blocks, sizeof *list->block, "blocks of the pair list"));
+        PLS_TRY(
+            pls_reserve(&list->block, &list->block_capacity, list->block_count + blocks, sizeof *list->block, "blocks of the pair list"));
         for (size_t b = 0; b < blocks; ++b)
             list->block[list->block_count++] =
                 (pls_pair_block){.section = (uint32_t)s,
@@ -196,8 +206,8 @@ static pls_status cut_blocks(pls_pair_list *list)
     return PLS_OK;
 }
 
-static void fill_candidates(pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, const pls_near_pairs *near, const wall_pairs *found,
-                            size_t *next, bool periodic)
+static void fill_candidates(pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, const pls_near_pairs *near,
+                            const wall_pairs *found, size_t *next, bool periodic)
 {
     for (size_t k = 0; k < near->count; ++k)
     {
@@ -222,7 +232,8 @@ static void fill_candidates(pls_pair_list *list, const pls_bodies *bodies, const
 // ---- memory of contacts -----------------------------------------------------------------------------------------------------------------------------
 
 /// Find what was remembered of a pair; entries of a body's number lie together.
-static const struct pls_remembered *recall(const pls_contact_memory *memory, const uint32_t *start, const uint32_t *order, uint32_t i, uint32_t j)
+static const struct pls_remembered *recall(const pls_contact_memory *memory, const uint32_t *start, const uint32_t *order, uint32_t i,
+                                           uint32_t j)
 {
     for (uint32_t k = start[i]; k < start[i + 1]; ++k)
         if (memory->entry[order[k]].number_j == j) return &memory->entry[order[k]];
@@ -346,7 +357,8 @@ static pls_status keep_reference(pls_pair_list *list, const pls_bodies *bodies)
     size_t capacity = list->reference_capacity;
     PLS_TRY(pls_reserve(&list->reference, &capacity, bodies->count, sizeof *list->reference, "positions when the pair list was made"));
     capacity = list->reference_capacity;
-    PLS_TRY(pls_reserve(&list->reference_radius, &capacity, bodies->count, sizeof *list->reference_radius, "radii when the pair list was made"));
+    PLS_TRY(pls_reserve(&list->reference_radius, &capacity, bodies->count, sizeof *list->reference_radius,
+                        "radii when the pair list was made"));
     list->reference_capacity = capacity;
 #pragma omp parallel for schedule(static)
     for (size_t row = 0; row < bodies->count; ++row)
@@ -362,7 +374,8 @@ static pls_status keep_reference(pls_pair_list *list, const pls_bodies *bodies)
 /// Nothing is known of which entries touch: every row is stale.
 static pls_status forget_touching_entries(pls_pair_list *list, size_t rows)
 {
-    PLS_TRY(renew(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + PLS_ROW_REACH, sizeof *list->near_entry, "touching entries"));
+    PLS_TRY(renew(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + PLS_ROW_REACH, sizeof *list->near_entry,
+                  "touching entries"));
     size_t capacity = list->near_capacity;
     PLS_TRY(pls_reserve(&list->near_count, &capacity, rows, sizeof *list->near_count, "touching entries"));
     capacity = list->near_capacity;
@@ -382,8 +395,8 @@ static pls_status lay_out(pls_pair_list *list, const pls_bodies *bodies, const p
     return cut_blocks(list);
 }
 
-pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double skin,
-                               const pls_contact_memory *memory)
+pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
+                               double skin, const pls_contact_memory *memory)
 {
     list->section_count = list->block_count = list->count = list->wall_first = list->listed = 0;
     list->stale = true; // until it is whole
@@ -418,8 +431,8 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
 
 size_t pls_pair_list_bytes(const pls_pair_list *list)
 {
-    return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift + list->touch_capacity + list->ended_capacity +
-           (list->history_capacity + list->slot_capacity) * sizeof(double) +
+    return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift +
+           list->touch_capacity + list->ended_capacity + (list->history_capacity + list->slot_capacity) * sizeof(double) +
            (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_entry_capacity) * sizeof *list->pairs.entry;
 }
 

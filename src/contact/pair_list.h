@@ -13,27 +13,26 @@
 #include "model/bodies.h"
 #include "model/domain.h"
 
-enum
-{
+enum {
     PLS_CONTACT_BLOCK = PLS_LAW_BATCH, ///< candidates per block of work: its arrays stay in the first-level cache
     PLS_PAIR_REACH = 64,               ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
     PLS_ROW_REACH = 16,                ///< gather rows behind the last body, and entries behind the last one, for loops that fetch ahead
     PLS_LARGE_WORLD = 20000,           ///< bodies from which rows and contacts overflow the near caches, so that fetching ahead pays
-    PLS_SLOT = 8,            ///< doubles in the slot of a sphere pair: F (3), delta/2, n x Ft (3), booked power and work
-    PLS_WALL_SLOT = 16,      ///< doubles in the slot of a wall pair: F (3), power, torque on i (3), work, torque on the wall (3), spare
-    PLS_SPRING_STRIDE = 4    ///< doubles of history when the law keeps at most one number besides the spring; twice that otherwise
+    PLS_SLOT = 8,                      ///< doubles in the slot of a sphere pair: F (3), delta/2, n x Ft (3), booked power and work
+    PLS_WALL_SLOT = 16,   ///< doubles in the slot of a wall pair: F (3), power, torque on i (3), work, torque on the wall (3), spare
+    PLS_SPRING_STRIDE = 4 ///< doubles of history when the law keeps at most one number besides the spring; twice that otherwise
 };
 
 typedef struct pls_pair_section
 {
-    bool wall;       ///< body i against the half-space `wall_row`
+    bool wall; ///< body i against the half-space `wall_row`
     uint32_t wall_row;
-    uint16_t law;    ///< index in the law table
-    double depth;    ///< of the half-space: it lets go of bodies whose centre is further behind its surface [m]
-    int stride;      ///< doubles of history per candidate
-    size_t first;    ///< first candidate, a multiple of 8
-    size_t count;    ///< candidates
-    size_t history;  ///< first double of history
+    uint16_t law;   ///< index in the law table
+    double depth;   ///< of the half-space: it lets go of bodies whose centre is further behind its surface [m]
+    int stride;     ///< doubles of history per candidate
+    size_t first;   ///< first candidate, a multiple of 8
+    size_t count;   ///< candidates
+    size_t history; ///< first double of history
 } pls_pair_section;
 
 /// A block of work: candidates first .. first + count of one section.
@@ -66,8 +65,8 @@ typedef struct pls_pair_list
     size_t row_i_capacity, row_j_capacity;
     int16_t (*shift)[4]; ///< periodic images: j's image lies at X_j + shift * edge; only in periodic worlds
     size_t shift_capacity;
-    uint8_t *touch;      ///< bit k % 8 of byte k / 8: candidate k touched at the last step
-    uint8_t *ended;      ///< likewise: touched at the step before the last and no more at the last; their history still holds the spring
+    uint8_t *touch; ///< bit k % 8 of byte k / 8: candidate k touched at the last step
+    uint8_t *ended; ///< likewise: touched at the step before the last and no more at the last; their history still holds the spring
     size_t touch_capacity, ended_capacity;
     double *history;
     size_t history_capacity;
@@ -83,9 +82,9 @@ typedef struct pls_pair_list
     double (*reference)[3]; ///< positions when it was made [m]
     double *reference_radius;
     size_t reference_capacity;
-    double skin;         ///< it was made with [m]
-    double drift;        ///< bound on how much two bodies can have come nearer since [m]
-    double image_drift;  ///< the part of it that a stretching box makes [m]
+    double skin;           ///< it was made with [m]
+    double drift;          ///< bound on how much two bodies can have come nearer since [m]
+    double image_drift;    ///< the part of it that a stretching box makes [m]
     double image_reach[3]; ///< how many edges lie between bodies of a listed pair, at most
     bool stale;
     uint64_t builds;
@@ -95,7 +94,10 @@ static inline double *pls_wall_slot(const pls_pair_list *list, size_t candidate)
 {
     return list->slot + list->wall_first * PLS_SLOT + (candidate - list->wall_first) * PLS_WALL_SLOT;
 }
-static inline bool pls_pair_touches(const pls_pair_list *list, size_t candidate) { return (list->touch[candidate >> 3] >> (candidate & 7)) & 1; }
+static inline bool pls_pair_touches(const pls_pair_list *list, size_t candidate)
+{
+    return (list->touch[candidate >> 3] >> (candidate & 7)) & 1;
+}
 
 /// What touching contacts remember, keyed by body numbers: carried across rebuilds, and what a checkpoint holds.
 /// Zero-initialise; `pls_contact_memory_free` releases.
@@ -106,19 +108,20 @@ typedef struct pls_contact_memory
         uint32_t number_i, number_j;
         double spring[3];
         double history[PLS_LAW_MAX_HISTORY];
-    } *entry;
+    } * entry;
     size_t count, capacity;
 } pls_contact_memory;
 
 pls_status pls_contact_memory_reserve(pls_contact_memory *memory, size_t count);
 void pls_contact_memory_free(pls_contact_memory *memory);
 /// Everything the touching contacts of the list remember, in list order.
-pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, pls_contact_memory *memory);
+pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws,
+                                  pls_contact_memory *memory);
 
 /// Make the list: all pairs nearer than `skin`, with the memory of contacts from `memory`.
 /// NOT_FOUND names two materials without a law; LIMIT_EXCEEDED for a periodic box narrower than two interaction ranges.
-pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double skin,
-                               const pls_contact_memory *memory);
+pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
+                               double skin, const pls_contact_memory *memory);
 void pls_pair_list_free(pls_pair_list *list);
 size_t pls_pair_list_bytes(const pls_pair_list *list);
 /// Touching contacts now.

@@ -9,15 +9,16 @@
 typedef struct pls_contact_work
 {
     // of sphere pairs: columns loaded from the rows of both bodies
-    _Alignas(64) double velocity[3][PLS_CONTACT_BLOCK];                                   ///< of i less j, mid-step [m/s]
-    _Alignas(64) double lead[3][PLS_CONTACT_BLOCK];                                       ///< what leads to that of the end [m/s]
-    _Alignas(64) double turn[3][PLS_CONTACT_BLOCK], turn_end[3][PLS_CONTACT_BLOCK];       ///< r_i w_i + r_j w_j, mid-step and end [m/s]
-    _Alignas(64) double sum[3][PLS_CONTACT_BLOCK], sum_end[3][PLS_CONTACT_BLOCK];         ///< w_i + w_j [rad/s]
-    _Alignas(64) double inv_distance[PLS_CONTACT_BLOCK], growth[PLS_CONTACT_BLOCK];       ///< of the centres [1/m]; of both radii in half a step [m]
+    _Alignas(64) double velocity[3][PLS_CONTACT_BLOCK];                             ///< of i less j, mid-step [m/s]
+    _Alignas(64) double lead[3][PLS_CONTACT_BLOCK];                                 ///< what leads to that of the end [m/s]
+    _Alignas(64) double turn[3][PLS_CONTACT_BLOCK], turn_end[3][PLS_CONTACT_BLOCK]; ///< r_i w_i + r_j w_j, mid-step and end [m/s]
+    _Alignas(64) double sum[3][PLS_CONTACT_BLOCK], sum_end[3][PLS_CONTACT_BLOCK];   ///< w_i + w_j [rad/s]
+    _Alignas(64) double inv_distance[PLS_CONTACT_BLOCK],
+        growth[PLS_CONTACT_BLOCK]; ///< of the centres [1/m]; of both radii in half a step [m]
     // of all pairs
     _Alignas(64) double normal[3][PLS_CONTACT_BLOCK]; ///< from i to j
     _Alignas(64) double delta[PLS_CONTACT_BLOCK];     ///< overlap [m]
-    _Alignas(64) double lever[PLS_CONTACT_BLOCK];     ///< sphere pairs: delta/2; walls: distance of the contact point from the centre of i [m]
+    _Alignas(64) double lever[PLS_CONTACT_BLOCK]; ///< sphere pairs: delta/2; walls: distance of the contact point from the centre of i [m]
     _Alignas(64) double normal_velocity[PLS_CONTACT_BLOCK];
     _Alignas(64) double slip_velocity[3][PLS_CONTACT_BLOCK];
     _Alignas(64) double slip_step[3][PLS_CONTACT_BLOCK]; ///< tangential displacement in this step [m]
@@ -50,7 +51,8 @@ typedef struct pls_contact_input
     double dt;    ///< [s]; 0 at the start of a run: no time has passed, springs and dissipation stay
 } pls_contact_input;
 
-PLS_SIMD_DECLARE(void, pls_contact_block, pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block, pls_contact_work *work);
+PLS_SIMD_DECLARE(void, pls_contact_block, pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block,
+                 pls_contact_work *work);
 
 /// For each set of lanes (a byte) their numbers, packed to the front.
 extern const uint8_t pls_packed_lanes[256][8];

@@ -101,8 +101,9 @@ static inline unsigned valid_lanes(const pls_pair_block *block, size_t k)
     return block->count - k >= 8 ? 0xffu : (1u << (block->count - k)) - 1;
 }
 
-static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
-                                                               const pls_pair_block *block, pls_contact_work *work, int periodic)
+static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *list, const pls_contact_input *in,
+                                                               const pls_pair_section *section, const pls_pair_block *block,
+                                                               pls_contact_work *work, int periodic)
 {
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
     for (size_t k = 0; k < block->count; k += 8)
@@ -133,10 +134,10 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
 typedef struct frame
 {
     pls_vd n[3], delta;
-    pls_vd v[3];       ///< relative velocity at the contact point at the end of the step
-    pls_vd u[3];       ///< tangential velocity in the middle of the step
-    pls_vd spin;       ///< mean spin about n, in the middle
-    pls_vd spring[3];  ///< as stored
+    pls_vd v[3];      ///< relative velocity at the contact point at the end of the step
+    pls_vd u[3];      ///< tangential velocity in the middle of the step
+    pls_vd spin;      ///< mean spin about n, in the middle
+    pls_vd spring[3]; ///< as stored
 } frame;
 
 /// Normal and tangential velocity, and the spring in the frame of now, as it would be had it not slid.
@@ -187,8 +188,9 @@ static inline void add_cross(pls_vd out[3], const pls_vd v[3], const pls_vd w[3]
 }
 
 /// Rows of both bodies to columns over contacts, normals and overlaps.
-static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section,
-                                                             pls_contact_work *work, int periodic, int growing)
+static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in,
+                                                             const pls_pair_section *section, pls_contact_work *work, int periodic,
+                                                             int growing)
 {
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
     const pls_v4 edge_rate = {in->domain->edge_rate[0], in->domain->edge_rate[1], in->domain->edge_rate[2], 0.0};
@@ -244,9 +246,11 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
 }
 
 /// Contact frames of the loaded pairs. Apart from loading, so that the long chains of one vector overlap with those of the next.
-static inline __attribute__((always_inline)) void frame_pairs(const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, int growing)
+static inline __attribute__((always_inline)) void frame_pairs(const pls_contact_input *in, const pls_pair_section *section,
+                                                              pls_contact_work *work, int growing)
 {
-    const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0; // is the overlap's half taken off the levers of velocities?
+    const double inward =
+        in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0; // is the overlap's half taken off the levers of velocities?
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
         frame f;
@@ -265,7 +269,8 @@ static inline __attribute__((always_inline)) void frame_pairs(const pls_contact_
         add_cross(f.v, end, levers, f.n);
 
         // Half a step back: n, delta and levers as they were, from the relative velocity of the centres (minus `rate`) and the growth of radii.
-        pls_vd approach = rate[0] * f.n[0] + rate[1] * f.n[1] + rate[2] * f.n[2], back = (0.5 * in->dt) * pls_vd_load(&work->inv_distance[k]);
+        pls_vd approach = rate[0] * f.n[0] + rate[1] * f.n[1] + rate[2] * f.n[2],
+               back = (0.5 * in->dt) * pls_vd_load(&work->inv_distance[k]);
         pls_vd grown = growing ? 0.5 * pls_vd_load(&work->growth[k]) : pls_vd_set(0.0), middle[3], old_levers[3], u[3];
         pls_vd old_cut = cut - inward * (0.25 * in->dt * approach + grown);
         for (int a = 0; a < 3; ++a)
@@ -375,14 +380,16 @@ static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const
             for (int lane = 0; lane < PLS_W; ++lane) row[lane] = pls_v4_load(&in->place[list->row_i[c + (size_t)(half + lane)]].x);
             pls_vd d[4];
             pls_columns4(row, d);
-            pls_vd height = wall->normal[0] * (d[0] - wall->position[0]) + wall->normal[1] * (d[1] - wall->position[1]) + wall->normal[2] * (d[2] - wall->position[2]);
+            pls_vd height = wall->normal[0] * (d[0] - wall->position[0]) + wall->normal[1] * (d[1] - wall->position[1]) +
+                            wall->normal[2] * (d[2] - wall->position[2]);
             now |= (pls_vd_less(height, d[3]) & pls_vd_less(pls_vd_set(behind), height)) << half;
         }
         note_touching(list, section, c, now & valid_lanes(block, k), work);
     }
 }
 
-static void load_walls(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work, const wall_frame *wall)
+static void load_walls(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work,
+                       const wall_frame *wall)
 {
     const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0;
     for (size_t k = 0; k < work->active_count; k += PLS_W)
@@ -423,14 +430,15 @@ static void load_walls(const pls_pair_list *list, const pls_contact_input *in, c
         for (int a = 0; a < 3; ++a)
         {
             int b = (a + 1) % 3, c = (a + 2) % 3;
-            f.v[a] = v_end[a] + lever * (w[4 + b] * f.n[c] - w[4 + c] * f.n[b]) -
-                     (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
+            f.v[a] =
+                v_end[a] + lever * (w[4 + b] * f.n[c] - w[4 + c] * f.n[b]) - (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
         }
 
         // Half a step back.
         double n[3];
         for (int a = 0; a < 3; ++a)
-            n[a] = -wall->normal[a] + 0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
+            n[a] = -wall->normal[a] +
+                   0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
         pls_vd old_x[3], old_arm[3], u[3];
         for (int a = 0; a < 3; ++a) old_x[a] = x[a] - (0.5 * in->dt) * (d[4 + a] - wall->velocity[0][a]);
         pls_vd old_radius = d[3] - growth;
@@ -455,7 +463,8 @@ static void store_walls(pls_pair_list *list, const pls_pair_section *section, pl
 {
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_vd n[3], ft[3], f[3], arm[3], fn = pls_vd_load(&work->normal_force[k]), lever = pls_vd_load(&work->lever[k]), first[8], second[8];
+        pls_vd n[3], ft[3], f[3], arm[3], fn = pls_vd_load(&work->normal_force[k]), lever = pls_vd_load(&work->lever[k]), first[8],
+                                          second[8];
         for (int a = 0; a < 3; ++a)
         {
             n[a] = pls_vd_load(&work->normal[a][k]);
@@ -468,7 +477,7 @@ static void store_walls(pls_pair_list *list, const pls_pair_section *section, pl
             int b = (a + 1) % 3, c = (a + 2) % 3;
             first[a] = f[a];
             first[4 + a] = lever * (n[b] * ft[c] - n[c] * ft[b]); // (c - X_i) x F
-            second[a] = arm[c] * f[b] - arm[b] * f[c];             // (c - X_j) x (-F)
+            second[a] = arm[c] * f[b] - arm[b] * f[c];            // (c - X_j) x (-F)
             second[4 + a] = pls_vd_set(0.0);
         }
         first[3] = pls_vd_load(&work->damping_power[k]);
@@ -549,24 +558,35 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
         wall = wall_of(in, section->wall_row);
         filter_walls(list, in, section, block, work, &wall);
     }
-    else if (in->domain->any_periodic) filter_pairs(list, in, section, block, work, 1);
-    else filter_pairs(list, in, section, block, work, 0);
+    else if (in->domain->any_periodic)
+        filter_pairs(list, in, section, block, work, 1);
+    else
+        filter_pairs(list, in, section, block, work, 0);
     if (work->active_count == 0) return;
-    for (size_t k = work->active_count; k % 8 != 0; ++k) work->active[k] = work->active[work->active_count - 1]; // padding repeats a contact
+    for (size_t k = work->active_count; k % 8 != 0; ++k)
+        work->active[k] = work->active[work->active_count - 1]; // padding repeats a contact
 
-    if (section->wall) load_walls(list, in, section, work, &wall);
+    if (section->wall)
+        load_walls(list, in, section, work, &wall);
     else
     {
-        if (in->domain->any_periodic) load_pairs(list, in, section, work, 1, in->growing);
-        else if (in->growing) load_pairs(list, in, section, work, 0, 1);
-        else load_pairs(list, in, section, work, 0, 0);
-        if (in->growing) frame_pairs(in, section, work, 1);
-        else frame_pairs(in, section, work, 0);
+        if (in->domain->any_periodic)
+            load_pairs(list, in, section, work, 1, in->growing);
+        else if (in->growing)
+            load_pairs(list, in, section, work, 0, 1);
+        else
+            load_pairs(list, in, section, work, 0, 0);
+        if (in->growing)
+            frame_pairs(in, section, work, 1);
+        else
+            frame_pairs(in, section, work, 0);
         if (law->ops->needs_effective) load_effective(list, in, work);
     }
     if (kept > 0) load_law_history(list, section, work, kept);
     begin_springs(work, in);
     apply_law(law, in, work);
-    if (section->wall) store_walls(list, section, work, kept);
-    else store_pairs(list, section, work, kept);
+    if (section->wall)
+        store_walls(list, section, work, kept);
+    else
+        store_pairs(list, section, work, kept);
 }

@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 #define PLS_JOIN_(a, b) a##_##b
-#define PLS_JOIN(a, b) PLS_JOIN_(a, b)
+#define PLS_JOIN(a, b)  PLS_JOIN_(a, b)
 
 #if defined(PLS_ISA)
 #define PLS_SIMD(name) PLS_JOIN(name, PLS_ISA)
@@ -22,11 +22,11 @@ const char *pls_isa_name(void);
 
 #if defined(PLS_ISA_ONLY_GENERIC)
 #define PLS_SIMD_DECLARE(result, name, ...) result name##_generic(__VA_ARGS__)
-#define PLS_SIMD_SELECT(name) (name##_generic)
+#define PLS_SIMD_SELECT(name)               (name##_generic)
 #else
-#define PLS_SIMD_DECLARE(result, name, ...)                                                                                                          \
-    result name##_v2(__VA_ARGS__);                                                                                                                   \
-    result name##_v3(__VA_ARGS__);                                                                                                                   \
+#define PLS_SIMD_DECLARE(result, name, ...) \
+    result name##_v2(__VA_ARGS__);          \
+    result name##_v3(__VA_ARGS__);          \
     result name##_v4(__VA_ARGS__)
 #define PLS_SIMD_SELECT(name) (pls_isa_level() == 2 ? name##_v4 : pls_isa_level() == 1 ? name##_v3 : name##_v2)
 #endif
@@ -43,16 +43,16 @@ const char *pls_isa_name(void);
 #define PLS_W 2
 #endif
 
-typedef double pls_vd __attribute__((vector_size(8 * PLS_W)));   ///< PLS_W doubles
-typedef int64_t pls_vi __attribute__((vector_size(8 * PLS_W)));  ///< masks and bit patterns of pls_vd
-typedef float pls_vf __attribute__((vector_size(4 * PLS_W)));    ///< PLS_W floats
-typedef double pls_v4 __attribute__((vector_size(32)));          ///< half a body row: three components and one more
+typedef double pls_vd __attribute__((vector_size(8 * PLS_W)));  ///< PLS_W doubles
+typedef int64_t pls_vi __attribute__((vector_size(8 * PLS_W))); ///< masks and bit patterns of pls_vd
+typedef float pls_vf __attribute__((vector_size(4 * PLS_W)));   ///< PLS_W floats
+typedef double pls_v4 __attribute__((vector_size(32)));         ///< half a body row: three components and one more
 typedef int64_t pls_v4i __attribute__((vector_size(32)));
-typedef double pls_v8 __attribute__((vector_size(64)));          ///< a row of a cache line
+typedef double pls_v8 __attribute__((vector_size(64))); ///< a row of a cache line
 typedef int64_t pls_v8i __attribute__((vector_size(64)));
 typedef double pls_v2 __attribute__((vector_size(16)));
 typedef float pls_f2 __attribute__((vector_size(8)));
-typedef float pls_f8 __attribute__((vector_size(32)));            ///< a row in single precision
+typedef float pls_f8 __attribute__((vector_size(32))); ///< a row in single precision
 
 static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
 static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }
@@ -140,8 +140,10 @@ static inline __attribute__((always_inline)) void pls_columns4(const pls_v4 *row
 #if PLS_W == 8
     pls_vd p[4];
     for (int k = 0; k < 4; ++k) p[k] = __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
-    pls_vd a = __builtin_shufflevector(p[0], p[1], 0, 8, 2, 10, 4, 12, 6, 14), b = __builtin_shufflevector(p[0], p[1], 1, 9, 3, 11, 5, 13, 7, 15);
-    pls_vd c = __builtin_shufflevector(p[2], p[3], 0, 8, 2, 10, 4, 12, 6, 14), d = __builtin_shufflevector(p[2], p[3], 1, 9, 3, 11, 5, 13, 7, 15);
+    pls_vd a = __builtin_shufflevector(p[0], p[1], 0, 8, 2, 10, 4, 12, 6, 14),
+           b = __builtin_shufflevector(p[0], p[1], 1, 9, 3, 11, 5, 13, 7, 15);
+    pls_vd c = __builtin_shufflevector(p[2], p[3], 0, 8, 2, 10, 4, 12, 6, 14),
+           d = __builtin_shufflevector(p[2], p[3], 1, 9, 3, 11, 5, 13, 7, 15);
     column[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
     column[1] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
     column[2] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
@@ -227,7 +229,7 @@ static inline pls_vd pls_vd_pack(pls_vd low, pls_vd high)
 {
     typedef int32_t half __attribute__((vector_size(4 * PLS_W)));
     typedef uint32_t uhalf __attribute__((vector_size(4 * PLS_W)));
-    uhalf a = (uhalf)(half)__builtin_convertvector(low, pls_vf), b = (uhalf)(half)__builtin_convertvector(high, pls_vf);
+    uhalf a = (uhalf)(half) __builtin_convertvector(low, pls_vf), b = (uhalf)(half) __builtin_convertvector(high, pls_vf);
     return (pls_vd)(__builtin_convertvector(a, pls_vi) | (__builtin_convertvector(b, pls_vi) << 32));
 }
 

@@ -1,7 +1,8 @@
-// parting.c -- contacts that end with a loaded tangential spring.
+// parting.c -- contacts that end with a loaded spring.
 //
 // While a contact ends its normal force goes through zero, but with dashpots the cone is mu |Fn| of a force that pulls, and the spring must balance the tangential
-// dashpot on it: the spring is still loaded when the grains part. What it holds is lost to motion, so it is booked as taken by sliding.
+// dashpot on it: the spring is still loaded when the grains part. What it holds is lost to motion, so it is booked as taken by sliding. So is what a wall held of a
+// body that it lets go of.
 //
 // The last force acted for half a step after the last touching step, and its spring grew meanwhile by half of this step's tangential displacement: the energy of
 // the spring with that is what is left. Few contacts end per step. They are booked in order of body numbers, so that sums do not depend on the list.
@@ -49,6 +50,17 @@ static pls_vec3 slip_of(const pls_world *world, const pls_pair_section *section,
     return pls_sub(v, pls_scale(n, pls_dot(v, n)));
 }
 
+/// Overlap a contact still had when it ended: none, but at a wall that let go of a body.
+static double overlap_left(const pls_world *world, const pls_pair_section *section, size_t c)
+{
+    if (!section->wall) return 0.0;
+    const pls_bodies *b = &world->bodies;
+    uint32_t i = world->list.row_i[c], j = world->list.row_j[c];
+    const pls_body_place *p = &b->place[i], *q = &b->place[j];
+    pls_vec3 n = pls_wall_normal(&b->orientation[j], world->def.dimension);
+    return fmax(0.0, p->radius - pls_dot(n, pls_vec(p->x - q->x, p->y - q->y, p->z - q->z)));
+}
+
 static struct pls_parted parted_of(const pls_world *world, const pls_pair_section *section, size_t c)
 {
     const pls_pair_list *list = &world->list;
@@ -58,13 +70,13 @@ static struct pls_parted parted_of(const pls_world *world, const pls_pair_sectio
     uint32_t i = list->row_i[c], j = list->row_j[c];
     double ri = b->place[i].radius, rj = b->place[j].radius, inv_mass = b->load[i].inv_mass + b->load[j].inv_mass, normal, shear;
     pls_vec3 spring = pls_add(pls_vec(history[0], history[1], history[2]), pls_scale(slip_of(world, section, c), 0.5 * world->dt));
-    const pls_contact_point point = {.delta = 0.0,
+    const pls_contact_point point = {.delta = overlap_left(world, section, c),
                                      .effective_radius = section->wall ? ri : ri * rj / (ri + rj),
                                      .effective_mass = inv_mass > 0.0 ? 1.0 / inv_mass : INFINITY,
                                      .spring_squared = pls_dot(spring, spring),
                                      .history = history + 3};
     law->ops->energy(law->constants, &point, &normal, &shear);
-    return (struct pls_parted){b->kind[i].number, b->kind[j].number, i, j, shear};
+    return (struct pls_parted){b->kind[i].number, b->kind[j].number, i, j, normal + shear};
 }
 
 static size_t count_ended(const pls_pair_list *list)

@@ -102,8 +102,7 @@ static inline void add_pair(const pls_pair_list *list, uint32_t entry, double ra
     g->booked += __builtin_convertvector(*(const pls_f2 *)(slot + 7), pls_v2);
 }
 
-enum
-{
+enum {
     ROWS_AHEAD = 8,   ///< rows whose forces are fetched into the cache before they are summed; within PLS_ROW_REACH
     ENTRIES_AHEAD = 8 ///< entries fetched of such a row; what lies behind its touching ones does no harm
 };
