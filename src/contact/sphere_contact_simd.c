@@ -1,7 +1,8 @@
 // sphere_contact_simd.c -- the hot loop: one block of candidates at a time, as short loops over arrays that stay in the first-level cache:
 //
 //     filter   which candidates touch (positions and radii only), and which of them touch for the first time
-//     load     normal, overlap, relative velocity at the contact point, the spring carried into the contact frame of now
+//     load     rows of both bodies to columns over contacts; normal and overlap
+//     frame    relative velocities at the contact point, the spring carried into the contact frame of now
 //     law      forces from overlap, velocity and spring (the user's door)
 //     store    force and n x shear into the contact's own slot, spring back to its history
 //

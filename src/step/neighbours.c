@@ -161,7 +161,7 @@ pls_status pls_neighbours_refresh(pls_world *world)
     PLS_TRY(pls_pair_list_build(list, &world->bodies, &world->domain, &world->laws, world->tuner.skin, &world->memory));
     set_wall_depths(world);
     world->memory_holds = false;
-    world->memory.count = 0;
+    pls_contact_memory_free(&world->memory); // as large as the list itself, and idle until the next
     if (world->special_stale) PLS_TRY(pls_find_specials(world));
     return PLS_OK;
 }
