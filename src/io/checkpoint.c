@@ -11,12 +11,10 @@
 #include <string.h>
 
 // The numbers of the header: X(name in the file, member of pls_persist_header, type in the file, type in memory)
-#define HEADER_NUMBERS(X)                                        \
-    X("step", step, H5T_STD_U64LE, H5T_NATIVE_UINT64)            \
-    X("time", time, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)           \
-    X("dt", dt, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)               \
-    X("base_step", base_step, H5T_STD_U64LE, H5T_NATIVE_UINT64)  \
-    X("base_time", base_time, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE) \
+#define HEADER_NUMBERS(X)                              \
+    X("step", step, H5T_STD_U64LE, H5T_NATIVE_UINT64)  \
+    X("time", time, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE) \
+    X("dt", dt, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)     \
     X("body_numbers", body_numbers, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
 
 static hid_t file_type(pls_type type)

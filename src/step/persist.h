@@ -16,8 +16,6 @@ typedef struct pls_persist_header
     uint64_t step;                  ///< steps done
     double time;                    ///< [s]
     double dt;                      ///< [s]
-    uint64_t base_step;             ///< time = base_time + (step - base_step) dt
-    double base_time;               ///< [s]
     double body_numbers;            ///< numbers ever given to bodies (largest + 1)
 } pls_persist_header;
 
