@@ -42,25 +42,24 @@ size_t pls_pair_list_touching(const pls_pair_list *list)
     return count;
 }
 
-pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws,
-                                  pls_contact_memory *memory)
+pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory)
 {
     memory->count = 0;
     PLS_TRY(pls_contact_memory_reserve(memory, pls_pair_list_touching(list)));
     for (size_t s = 0; s < list->section_count; ++s)
     {
         const pls_pair_section *section = &list->section[s];
-        int kept = laws->law[section->law].ops->history;
         for (size_t c = section->first; c < section->first + section->count; ++c)
         {
             if (!pls_pair_touches(list, c)) continue;
-            const double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
+            double numbers[3 + PLS_LAW_MAX_HISTORY] = {0};
+            pls_pair_history_read(list, section, c, numbers);
             struct pls_remembered *entry = &memory->entry[memory->count++];
             memset(entry, 0, sizeof *entry);
             entry->number_i = bodies->kind[list->row_i[c]].number;
             entry->number_j = bodies->kind[list->row_j[c]].number;
-            memcpy(entry->spring, history, sizeof entry->spring);
-            memcpy(entry->history, history + 3, (size_t)kept * sizeof *history);
+            memcpy(entry->spring, numbers, sizeof entry->spring);
+            memcpy(entry->history, numbers + 3, sizeof entry->history);
         }
     }
     return PLS_OK;
@@ -83,7 +82,7 @@ static pls_status add_section(pls_pair_list *list, const pls_law_table *laws, ui
         pls_reserve(&list->section, &list->section_capacity, list->section_count + 1, sizeof *list->section, "sections of the pair list"));
     pls_pair_section *section = &list->section[list->section_count++];
     *section = (pls_pair_section){.wall = wall, .wall_row = wall_row, .law = law, .depth = INFINITY, .first = list->count, .count = count};
-    section->stride = laws->law[law].ops->history > 1 ? 2 * PLS_SPRING_STRIDE : PLS_SPRING_STRIDE;
+    section->numbers = 3 + laws->law[law].ops->history;
     list->count += (count + 7) / 8 * 8;
     list->listed += count;
     return PLS_OK;
@@ -168,7 +167,7 @@ static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
     for (size_t s = 0; s < list->section_count; ++s)
     {
         list->section[s].history = history;
-        history += (list->section[s].count + 7) / 8 * 8 * (size_t)list->section[s].stride;
+        history += (list->section[s].count + 7) / 8 * 8 * (size_t)list->section[s].numbers;
     }
     size_t reach = count + PLS_PAIR_REACH;
     PLS_TRY(renew(&list->row_i, &list->row_i_capacity, reach, sizeof *list->row_i, "the pair list"));
@@ -177,8 +176,15 @@ static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
     PLS_TRY(renew(&list->touch, &list->touch_capacity, count / 8 + 1, 1, "the touching pairs"));
     PLS_TRY(renew(&list->ended, &list->ended_capacity, count / 8 + 1, 1, "the pairs that part"));
     PLS_TRY(renew(&list->history, &list->history_capacity, history, sizeof *list->history, "the history of contacts"));
-    size_t slots = list->wall_first * PLS_SLOT + (count - list->wall_first) * PLS_WALL_SLOT;
+    size_t slots = (list->wall_first + 1) * PLS_SLOT + (count - list->wall_first) * PLS_WALL_SLOT;
     PLS_TRY(renew(&list->slot, &list->slot_capacity, slots, sizeof *list->slot, "the forces of contacts"));
+    memset(list->slot + pls_zero_slot(list) * PLS_SLOT, 0, PLS_SLOT * sizeof *list->slot);
+    if (!list->equal_radii)
+    {
+        PLS_TRY(renew(&list->skew, &list->skew_capacity, list->wall_first + 1, sizeof *list->skew, "the forces of contacts"));
+        list->skew[pls_zero_slot(list)] = 0.0;
+    }
+    if (history > 0) memset(list->history, 0, history * sizeof *list->history); // vectors of eight read what no contact has written
     memset(list->touch, 0, count / 8 + 1);
     memset(list->ended, 0, count / 8 + 1);
     memset(list->row_i, 0, reach * sizeof *list->row_i);
@@ -226,6 +232,12 @@ static void fill_candidates(pls_pair_list *list, const pls_bodies *bodies, const
             list->row_i[section->first + k] = found->row[taken++];
             list->row_j[section->first + k] = section->wall_row;
         }
+        for (size_t c = section->first + section->count; c % 8 != 0; ++c)
+        {
+            list->row_i[c] = list->row_i[c - 1];
+            list->row_j[c] = list->row_j[c - 1];
+            if (periodic) memcpy(list->shift[c], list->shift[c - 1], sizeof list->shift[c]);
+        }
     }
 }
 
@@ -240,7 +252,7 @@ static const struct pls_remembered *recall(const pls_contact_memory *memory, con
     return NULL;
 }
 
-static pls_status put_back(pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, const pls_contact_memory *memory)
+static pls_status put_back(pls_pair_list *list, const pls_bodies *bodies, const pls_contact_memory *memory)
 {
     if (memory->count == 0) return PLS_OK;
     uint32_t *start = NULL, *order = NULL;
@@ -257,7 +269,6 @@ static pls_status put_back(pls_pair_list *list, const pls_bodies *bodies, const 
     for (size_t s = 0; s < list->section_count; ++s)
     {
         const pls_pair_section *section = &list->section[s];
-        int kept = laws->law[section->law].ops->history;
 #pragma omp parallel for schedule(static)
         for (size_t byte = section->first / 8; byte < (section->first + section->count + 7) / 8; ++byte)
             for (size_t c = byte * 8; c < byte * 8 + 8 && c < section->first + section->count; ++c)
@@ -265,10 +276,8 @@ static pls_status put_back(pls_pair_list *list, const pls_bodies *bodies, const 
                 const struct pls_remembered *entry =
                     recall(memory, start, order, bodies->kind[list->row_i[c]].number, bodies->kind[list->row_j[c]].number);
                 if (!entry) continue;
-                double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
-                memset(history, 0, (size_t)section->stride * sizeof *history);
-                memcpy(history, entry->spring, sizeof entry->spring);
-                memcpy(history + 3, entry->history, (size_t)kept * sizeof *history);
+                double *history = pls_pair_history(list, section, c);
+                for (int h = 0; h < section->numbers; ++h) history[8 * h] = h < 3 ? entry->spring[h] : entry->history[h - 3];
                 list->touch[byte] = (uint8_t)(list->touch[byte] | 1u << (c & 7));
             }
     }
@@ -374,14 +383,10 @@ static pls_status keep_reference(pls_pair_list *list, const pls_bodies *bodies)
 /// Nothing is known of which entries touch: every row is stale.
 static pls_status forget_touching_entries(pls_pair_list *list, size_t rows)
 {
-    PLS_TRY(renew(&list->near_entry, &list->near_entry_capacity, list->pairs.start[rows] + PLS_ROW_REACH, sizeof *list->near_entry,
-                  "touching entries"));
-    size_t capacity = list->near_capacity;
-    PLS_TRY(pls_reserve(&list->near_count, &capacity, rows, sizeof *list->near_count, "touching entries"));
-    capacity = list->near_capacity;
-    PLS_TRY(pls_reserve(&list->near_stale, &capacity, rows, sizeof *list->near_stale, "touching entries"));
-    list->near_capacity = capacity;
-    memset(list->near_stale, 1, rows);
+    size_t room = list->pairs.start[rows] + (rows + PLS_ROW_REACH) * PLS_NEAR_SPARE;
+    PLS_TRY(renew(&list->near, &list->near_capacity, room, sizeof *list->near, "touching entries"));
+    memset(list->near, 0, room * sizeof *list->near); // loops that fetch ahead look at rows before they are listed
+    for (size_t row = 0; row < rows; ++row) pls_near_row(list, row)[0] = PLS_NEAR_STALE;
     return PLS_OK;
 }
 
@@ -395,11 +400,24 @@ static pls_status lay_out(pls_pair_list *list, const pls_bodies *bodies, const p
     return cut_blocks(list);
 }
 
+static bool have_equal_radii(const pls_bodies *bodies)
+{
+    double first = INFINITY;
+    for (size_t row = 0; row < bodies->count; ++row)
+    {
+        if (bodies->kind[row].flags & PLS_BODY_UNBOUNDED) continue;
+        if (first == INFINITY) first = bodies->place[row].radius;
+        if (bodies->place[row].radius != first) return false;
+    }
+    return true;
+}
+
 pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
-                               double skin, const pls_contact_memory *memory)
+                               double skin, bool growing, const pls_contact_memory *memory)
 {
     list->section_count = list->block_count = list->count = list->wall_first = list->listed = 0;
     list->stale = true; // until it is whole
+    list->equal_radii = !growing && have_equal_radii(bodies);
     pls_near_pairs near = {0};
     wall_pairs found = {0};
     size_t *next = NULL;
@@ -409,7 +427,7 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
     pls_near_pairs_free(&near);
     pls_release(&found.row);
     pls_release(&next);
-    if (status == PLS_OK) status = put_back(list, bodies, laws, memory);
+    if (status == PLS_OK) status = put_back(list, bodies, memory);
     if (status == PLS_OK) status = gather_rows(&list->pairs, list, bodies, false);
     if (status == PLS_OK) status = gather_rows(&list->walls, list, bodies, true);
     if (status == PLS_OK) status = forget_touching_entries(list, bodies->count);
@@ -432,8 +450,9 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
 size_t pls_pair_list_bytes(const pls_pair_list *list)
 {
     return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift +
-           list->touch_capacity + list->ended_capacity + (list->history_capacity + list->slot_capacity) * sizeof(double) +
-           (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_entry_capacity) * sizeof *list->pairs.entry;
+           list->touch_capacity + list->ended_capacity +
+           (list->history_capacity + list->slot_capacity + list->skew_capacity) * sizeof(double) +
+           (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity) * sizeof *list->pairs.entry;
 }
 
 void pls_pair_list_free(pls_pair_list *list)
@@ -451,9 +470,8 @@ void pls_pair_list_free(pls_pair_list *list)
     pls_release(&list->pairs.entry);
     pls_release(&list->walls.start);
     pls_release(&list->walls.entry);
-    pls_release(&list->near_entry);
-    pls_release(&list->near_count);
-    pls_release(&list->near_stale);
+    pls_release(&list->skew);
+    pls_release(&list->near);
     pls_release(&list->reference);
     pls_release(&list->reference_radius);
     memset(list, 0, sizeof *list);

@@ -18,10 +18,14 @@ enum {
     PLS_PAIR_REACH = 64,               ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
     PLS_ROW_REACH = 16,                ///< gather rows behind the last body, and entries behind the last one, for loops that fetch ahead
     PLS_LARGE_WORLD = 20000,           ///< bodies from which rows and contacts overflow the near caches, so that fetching ahead pays
-    PLS_SLOT = 8,                      ///< doubles in the slot of a sphere pair: F (3), delta/2, n x Ft (3), booked power and work
-    PLS_WALL_SLOT = 16,   ///< doubles in the slot of a wall pair: F (3), power, torque on i (3), work, torque on the wall (3), spare
-    PLS_SPRING_STRIDE = 4 ///< doubles of history when the law keeps at most one number besides the spring; twice that otherwise
+    PLS_SLOT = 8,       ///< doubles in the slot of a sphere pair: F on i (3), power of its dashpots, torque (3), work of its slider
+    PLS_WALL_SLOT = 16, ///< doubles in the slot of a wall pair: the same for i, then for the wall
+    PLS_NEAR_HEAD = 2,  ///< numbers before the near entries of a row: how many of partners with lower numbers, of higher ones
+    PLS_NEAR_QUAD = 4,  ///< near entries come in multiples of this, so that the loop over them has few turns, mostly equally many
+    PLS_NEAR_SPARE = PLS_NEAR_HEAD + 2 * (PLS_NEAR_QUAD - 1) ///< room a near row needs besides its entries
 };
+/// In the head of a near row: contacts of the row began or ended since it was listed.
+#define PLS_NEAR_STALE UINT32_MAX
 
 typedef struct pls_pair_section
 {
@@ -29,7 +33,7 @@ typedef struct pls_pair_section
     uint32_t wall_row;
     uint16_t law;   ///< index in the law table
     double depth;   ///< of the half-space: it lets go of bodies whose centre is further behind its surface [m]
-    int stride;     ///< doubles of history per candidate
+    int numbers;    ///< of history per candidate: the spring's three and what the law keeps
     size_t first;   ///< first candidate, a multiple of 8
     size_t count;   ///< candidates
     size_t history; ///< first double of history
@@ -68,15 +72,16 @@ typedef struct pls_pair_list
     uint8_t *touch; ///< bit k % 8 of byte k / 8: candidate k touched at the last step
     uint8_t *ended; ///< likewise: touched at the step before the last and no more at the last; their history still holds the spring
     size_t touch_capacity, ended_capacity;
-    double *history;
+    double *history; ///< of eight candidates at a time: eight values of the first number, eight of the second ...
     size_t history_capacity;
-    double *slot; ///< PLS_SLOT per sphere pair, then PLS_WALL_SLOT per wall pair
+    double *slot; ///< PLS_SLOT per sphere pair; one that is always zero; PLS_WALL_SLOT per wall pair
     size_t slot_capacity;
+    double *skew; ///< (r_i - r_j) / distance per sphere pair, 0 for the zero slot; not used where all radii are equal
+    size_t skew_capacity;
+    bool equal_radii;
     pls_gather_rows pairs, walls;
-    uint32_t *near_entry; ///< the touching entries of each row of `pairs`, in order, from the row's start
-    uint32_t *near_count; ///< how many
-    uint8_t *near_stale;  ///< 1 where contacts of the row began or ended since they were listed
-    size_t near_entry_capacity, near_capacity;
+    uint32_t *near; ///< per body: a head, then candidates that touch, first those in which it is j, then as i, filled up with the zero slot
+    size_t near_capacity;
 
     // when it is stale
     double (*reference)[3]; ///< positions when it was made [m]
@@ -90,9 +95,28 @@ typedef struct pls_pair_list
     uint64_t builds;
 } pls_pair_list;
 
+/// Number of the slot that is always zero.
+static inline size_t pls_zero_slot(const pls_pair_list *list) { return list->wall_first; }
 static inline double *pls_wall_slot(const pls_pair_list *list, size_t candidate)
 {
-    return list->slot + list->wall_first * PLS_SLOT + (candidate - list->wall_first) * PLS_WALL_SLOT;
+    return list->slot + (list->wall_first + 1) * PLS_SLOT + (candidate - list->wall_first) * PLS_WALL_SLOT;
+}
+/// Head of a body's near row.
+static inline uint32_t *pls_near_row(const pls_pair_list *list, size_t row)
+{
+    return list->near + list->pairs.start[row] + row * PLS_NEAR_SPARE;
+}
+/// First number of a candidate's history; the next one lies 8 further, and so on.
+static inline double *pls_pair_history(const pls_pair_list *list, const pls_pair_section *section, size_t candidate)
+{
+    size_t place = candidate - section->first;
+    return list->history + section->history + place / 8 * 8 * (size_t)section->numbers + place % 8;
+}
+static inline void pls_pair_history_read(const pls_pair_list *list, const pls_pair_section *section, size_t candidate,
+                                         double numbers[3 + PLS_LAW_MAX_HISTORY])
+{
+    const double *history = pls_pair_history(list, section, candidate);
+    for (int h = 0; h < section->numbers; ++h) numbers[h] = history[8 * h];
 }
 static inline bool pls_pair_touches(const pls_pair_list *list, size_t candidate)
 {
@@ -115,13 +139,12 @@ typedef struct pls_contact_memory
 pls_status pls_contact_memory_reserve(pls_contact_memory *memory, size_t count);
 void pls_contact_memory_free(pls_contact_memory *memory);
 /// Everything the touching contacts of the list remember, in list order.
-pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws,
-                                  pls_contact_memory *memory);
+pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory);
 
-/// Make the list: all pairs nearer than `skin`, with the memory of contacts from `memory`.
+/// Make the list: all pairs nearer than `skin`, with the memory of contacts from `memory`. `growing`: radii may change while it is in use.
 /// NOT_FOUND names two materials without a law; LIMIT_EXCEEDED for a periodic box narrower than two interaction ranges.
 pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
-                               double skin, const pls_contact_memory *memory);
+                               double skin, bool growing, const pls_contact_memory *memory);
 void pls_pair_list_free(pls_pair_list *list);
 size_t pls_pair_list_bytes(const pls_pair_list *list);
 /// Touching contacts now.

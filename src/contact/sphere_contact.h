@@ -8,32 +8,35 @@
 /// Arrays of one block of work, filled by the geometry, worked on by the law, read when forces are stored. One per thread.
 typedef struct pls_contact_work
 {
-    // of sphere pairs: columns loaded from the rows of both bodies
-    _Alignas(64) double velocity[3][PLS_CONTACT_BLOCK];                             ///< of i less j, mid-step [m/s]
-    _Alignas(64) double lead[3][PLS_CONTACT_BLOCK];                                 ///< what leads to that of the end [m/s]
-    _Alignas(64) double turn[3][PLS_CONTACT_BLOCK], turn_end[3][PLS_CONTACT_BLOCK]; ///< r_i w_i + r_j w_j, mid-step and end [m/s]
-    _Alignas(64) double sum[3][PLS_CONTACT_BLOCK], sum_end[3][PLS_CONTACT_BLOCK];   ///< w_i + w_j [rad/s]
-    _Alignas(64) double inv_distance[PLS_CONTACT_BLOCK],
-        growth[PLS_CONTACT_BLOCK]; ///< of the centres [1/m]; of both radii in half a step [m]
-    // of all pairs
-    _Alignas(64) double normal[3][PLS_CONTACT_BLOCK]; ///< from i to j
-    _Alignas(64) double delta[PLS_CONTACT_BLOCK];     ///< overlap [m]
-    _Alignas(64) double lever[PLS_CONTACT_BLOCK]; ///< sphere pairs: delta/2; walls: distance of the contact point from the centre of i [m]
-    _Alignas(64) double normal_velocity[PLS_CONTACT_BLOCK];
-    _Alignas(64) double slip_velocity[3][PLS_CONTACT_BLOCK];
-    _Alignas(64) double slip_step[3][PLS_CONTACT_BLOCK]; ///< tangential displacement in this step [m]
+    // Some places are used twice, so that all of this stays in the first-level cache.
+    _Alignas(64) double normal[3][PLS_CONTACT_BLOCK];        ///< from i to j; first X_j - X_i [m]
+    _Alignas(64) double delta[PLS_CONTACT_BLOCK];            ///< overlap; first r_i + r_j [m]
+    _Alignas(64) double slip_velocity[3][PLS_CONTACT_BLOCK]; ///< at the end of the step; first that of the centres, j less i [m/s]
+    _Alignas(64) double normal_velocity[PLS_CONTACT_BLOCK];  ///< [m/s]
+    _Alignas(64) double spring[3][PLS_CONTACT_BLOCK];        ///< [m]
+    _Alignas(64) double normal_force[PLS_CONTACT_BLOCK];     ///< [N]
+    _Alignas(64) double shear_force[3][PLS_CONTACT_BLOCK];   ///< [N]
+    _Alignas(64) double damping_power[PLS_CONTACT_BLOCK];    ///< [W]
+    _Alignas(64) double slip_work[PLS_CONTACT_BLOCK];        ///< [J]
+    // of sphere pairs
+    _Alignas(64) double distance[PLS_CONTACT_BLOCK];     ///< of the centres [m]
+    _Alignas(64) double inv_distance[PLS_CONTACT_BLOCK]; ///< [1/m]
+    _Alignas(64) double velocity[3][PLS_CONTACT_BLOCK];  ///< of the centres, j less i, mid-step [m/s]
+    _Alignas(64) double spin[3][PLS_CONTACT_BLOCK];      ///< w_i + w_j, mid-step [rad/s]
+    _Alignas(64) double spin_end[3][PLS_CONTACT_BLOCK];  ///< w_i + w_j at the end of the step [rad/s]
+    _Alignas(64) double skew[3][PLS_CONTACT_BLOCK];      ///< (r_i - r_j)/2 (w_i - w_j), mid-step [m/s]
+    _Alignas(64) double skew_end[3][PLS_CONTACT_BLOCK];  ///< the same at the end of the step
+    _Alignas(64) double growth[PLS_CONTACT_BLOCK];       ///< of both radii in half a step [m]
+    // of walls
+    _Alignas(64) double lever[PLS_CONTACT_BLOCK];    ///< distance of the contact point from the centre of i [m]
+    _Alignas(64) double point[3][PLS_CONTACT_BLOCK]; ///< contact point from the wall's position [m]
+    // for laws that ask
     _Alignas(64) double effective_radius[PLS_CONTACT_BLOCK];
     _Alignas(64) double effective_mass[PLS_CONTACT_BLOCK];
-    _Alignas(64) double spring[3][PLS_CONTACT_BLOCK];
     _Alignas(64) double history[PLS_LAW_MAX_HISTORY][PLS_CONTACT_BLOCK];
-    _Alignas(64) double normal_force[PLS_CONTACT_BLOCK];
-    _Alignas(64) double shear_force[3][PLS_CONTACT_BLOCK];
-    _Alignas(64) double damping_power[PLS_CONTACT_BLOCK];
-    _Alignas(64) double slip_work[PLS_CONTACT_BLOCK];
-    _Alignas(64) double point[3][PLS_CONTACT_BLOCK]; ///< walls: contact point from the wall's position [m]
-    uint32_t active[PLS_CONTACT_BLOCK + 16];         ///< candidates that touch
-    uint32_t fresh[PLS_CONTACT_BLOCK];               ///< places in `active` of contacts that began in this step
-    size_t active_count, fresh_count;
+    uint32_t active[PLS_CONTACT_BLOCK + 16]; ///< candidates that were picked because they touch
+    size_t active_count;
+    uint8_t fresh[PLS_CONTACT_BLOCK / 8]; ///< bit k % 8 of byte k / 8: contact k of the arrays began in this step
 } pls_contact_work;
 
 /// What the loops read besides the pair list.

@@ -45,14 +45,12 @@ const char *pls_isa_name(void);
 
 typedef double pls_vd __attribute__((vector_size(8 * PLS_W)));  ///< PLS_W doubles
 typedef int64_t pls_vi __attribute__((vector_size(8 * PLS_W))); ///< masks and bit patterns of pls_vd
-typedef float pls_vf __attribute__((vector_size(4 * PLS_W)));   ///< PLS_W floats
 typedef double pls_v4 __attribute__((vector_size(32)));         ///< half a body row: three components and one more
 typedef int64_t pls_v4i __attribute__((vector_size(32)));
 typedef double pls_v8 __attribute__((vector_size(64))); ///< a row of a cache line
 typedef int64_t pls_v8i __attribute__((vector_size(64)));
-typedef double pls_v2 __attribute__((vector_size(16)));
-typedef float pls_f2 __attribute__((vector_size(8)));
 typedef float pls_f8 __attribute__((vector_size(32))); ///< a row in single precision
+typedef int32_t pls_i8 __attribute__((vector_size(32)));
 
 static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
 static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }
@@ -98,28 +96,60 @@ static inline unsigned pls_vd_less(pls_vd a, pls_vd b)
 }
 #endif
 
+/// a > b ? a : b
+static inline pls_vd pls_vd_max(pls_vd a, pls_vd b)
+{
+#if defined(__AVX512F__)
+    return (pls_vd)_mm512_max_pd((__m512d)a, (__m512d)b);
+#elif defined(__AVX2__)
+    return (pls_vd)_mm256_max_pd((__m256d)a, (__m256d)b);
+#elif defined(__SSE2__)
+    return (pls_vd)_mm_max_pd((__m128d)a, (__m128d)b);
+#else
+    return pls_vd_pick((pls_vi)(a > b), a, b);
+#endif
+}
+
+/// Bit k of `bits` ? lane k of a : lane k of b.
+static inline pls_vd pls_vd_choose(unsigned bits, pls_vd a, pls_vd b)
+{
+#if defined(__AVX512F__)
+    return (pls_vd)_mm512_mask_blend_pd((__mmask8)bits, (__m512d)b, (__m512d)a);
+#elif PLS_W == 4
+    const pls_vi lane = {1, 2, 4, 8};
+    return pls_vd_pick((pls_vi)((((pls_vi){0} + (int64_t)bits) & lane) == lane), a, b);
+#else
+    const pls_vi lane = {1, 2};
+    return pls_vd_pick((pls_vi)((((pls_vi){0} + (int64_t)bits) & lane) == lane), a, b);
+#endif
+}
+
 // Transposes. Rows are eight (or four) doubles in memory, one per contact; columns are vectors over PLS_W contacts.
 
 #if PLS_W == 8
+// Pairs of rows are interleaved, then quarters of vectors picked twice: instructions that every processor has fast (general permutations are not).
+static inline pls_vd pls_even_quarters_(pls_vd a, pls_vd b) { return __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13); }
+static inline pls_vd pls_odd_quarters_(pls_vd a, pls_vd b) { return __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15); }
+
 static inline __attribute__((always_inline)) void pls_transpose8_(pls_vd r[8])
 {
     pls_vd a[8], b[8];
     for (int k = 0; k < 4; ++k)
     {
-        a[2 * k] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-        a[2 * k + 1] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+        a[k] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        a[4 + k] = __builtin_shufflevector(r[2 * k], r[2 * k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
     }
-    for (int k = 0; k < 2; ++k)
+    for (int k = 0; k < 4; ++k)
+    {
+        b[2 * k] = pls_even_quarters_(a[2 * k], a[2 * k + 1]);
+        b[2 * k + 1] = pls_odd_quarters_(a[2 * k], a[2 * k + 1]);
+    }
+    for (int odd = 0; odd < 2; ++odd)
         for (int c = 0; c < 2; ++c)
         {
-            b[4 * k + c] = __builtin_shufflevector(a[4 * k + c], a[4 * k + 2 + c], 0, 1, 8, 9, 4, 5, 12, 13);
-            b[4 * k + 2 + c] = __builtin_shufflevector(a[4 * k + c], a[4 * k + 2 + c], 2, 3, 10, 11, 6, 7, 14, 15);
+            r[2 * c + odd] = pls_even_quarters_(b[4 * odd + c], b[4 * odd + 2 + c]);
+            r[4 + 2 * c + odd] = pls_odd_quarters_(b[4 * odd + c], b[4 * odd + 2 + c]);
         }
-    for (int c = 0; c < 4; ++c)
-    {
-        r[c] = __builtin_shufflevector(b[c], b[4 + c], 0, 1, 2, 3, 8, 9, 10, 11);
-        r[4 + c] = __builtin_shufflevector(b[c], b[4 + c], 4, 5, 6, 7, 12, 13, 14, 15);
-    }
 }
 #endif
 
@@ -222,15 +252,6 @@ static inline __attribute__((always_inline)) void pls_rows8(const pls_vd column[
     pls_rows4(column, row, count);
     pls_rows4(column + 4, high, count);
 #endif
-}
-
-/// Two floats per lane in the place of a double: what is booked per contact need not be finer.
-static inline pls_vd pls_vd_pack(pls_vd low, pls_vd high)
-{
-    typedef int32_t half __attribute__((vector_size(4 * PLS_W)));
-    typedef uint32_t uhalf __attribute__((vector_size(4 * PLS_W)));
-    uhalf a = (uhalf)(half) __builtin_convertvector(low, pls_vf), b = (uhalf)(half) __builtin_convertvector(high, pls_vf);
-    return (pls_vd)(__builtin_convertvector(a, pls_vi) | (__builtin_convertvector(b, pls_vi) << 32));
 }
 
 #endif // PLS_ISA

@@ -48,14 +48,6 @@ typedef struct pls_body_before
     float spare;      ///< keeps rows aligned
 } pls_body_before;
 
-/// What the contacts of a body have taken from motion since the start; half of each contact goes to either body.
-typedef struct pls_body_energy
-{
-    double damped; ///< by dashpots [J]
-    double power;  ///< by dashpots, now [W]
-    double slid;   ///< by sliding [J]
-} pls_body_energy;
-
 typedef struct pls_body_mass
 {
     double mass;       ///< [kg]
@@ -94,37 +86,39 @@ enum pls_body_flags {
     X(pls_body_load, load)               \
     X(pls_body_before, before)           \
     X(pls_body_mass, mass)               \
-    X(pls_body_energy, energy)           \
+    X(double, damped)                    \
+    X(double, damping_power)             \
+    X(double, slid)                      \
     X(double, scale)                     \
     X(pls_body_kind, kind)
 
 // X(name, type, components, flags, unit, column, row type, first member, meaning)
-#define PLS_BODY_FIELDS(X)                                                                                                               \
-    X("number", PLS_U32, 1, PERSISTS | FRAME | ID, "", kind, pls_body_kind, number, "persistent number of the body")                     \
-    X("generation", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, generation, "how often the number has been given")                    \
-    X("group", PLS_U32, 1, PERSISTS | FRAME, "", kind, pls_body_kind, group, "entry of the scene it belongs to")                         \
-    X("shape", PLS_U16, 1, PERSISTS, "", kind, pls_body_kind, shape, "its shape")                                                        \
-    X("material", PLS_U16, 1, PERSISTS | FRAME, "", kind, pls_body_kind, material, "its material")                                       \
-    X("flags", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, flags,                                                                     \
-      "how it moves: 1 unbounded, 2 driven, 4 partly driven, 8 anisotropic")                                                             \
-    X("motion", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, motion, "its prescribed motion")                                          \
-    X("position", PLS_F64, 3, PERSISTS, "m", place, pls_body_place, x, "centre of mass")                                                 \
-    X("radius", PLS_F64, 1, PERSISTS | FRAME, "m", place, pls_body_place, radius, "bounding radius")                                     \
-    X("velocity", PLS_F64, 3, PERSISTS | FRAME, "m/s", place, pls_body_place, vx, "velocity of the centre of mass")                      \
-    X("inv_mass", PLS_F64, 1, PERSISTS, "1/kg", load, pls_body_load, inv_mass, "inverse mass, 0 where no force moves it")                \
-    X("angular_velocity", PLS_F64, 3, PERSISTS | FRAME, "rad/s", spin, pls_body_spin, wx, "angular velocity, world frame")               \
-    X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", load, pls_body_load, inv_inertia, "inverse moment of isotropic bodies")         \
-    X("orientation", PLS_F64, 4, PERSISTS | FRAME, "", orientation, pls_body_orientation, w,                                             \
-      "unit quaternion w x y z, grain frame to world")                                                                                   \
-    X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                                    \
-    X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                         \
-    X("energy_damped", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, damped, "half of the energy taken by its contacts' dashpots") \
-    X("damping_power", PLS_F64, 1, PERSISTS, "W", energy, pls_body_energy, power, "half of the power taken by its contacts' dashpots")   \
-    X("force_before", PLS_F32, 3, PERSISTS, "N", before, pls_body_before, fx, "force one step earlier")                                  \
-    X("torque_before", PLS_F32, 3, PERSISTS, "N m", before, pls_body_before, tx, "torque one step earlier")                              \
-    X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                             \
-    X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                                \
-    X("energy_slid", PLS_F64, 1, PERSISTS, "J", energy, pls_body_energy, slid, "half of the energy taken by sliding at its contacts")    \
+#define PLS_BODY_FIELDS(X)                                                                                                       \
+    X("number", PLS_U32, 1, PERSISTS | FRAME | ID, "", kind, pls_body_kind, number, "persistent number of the body")             \
+    X("generation", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, generation, "how often the number has been given")            \
+    X("group", PLS_U32, 1, PERSISTS | FRAME, "", kind, pls_body_kind, group, "entry of the scene it belongs to")                 \
+    X("shape", PLS_U16, 1, PERSISTS, "", kind, pls_body_kind, shape, "its shape")                                                \
+    X("material", PLS_U16, 1, PERSISTS | FRAME, "", kind, pls_body_kind, material, "its material")                               \
+    X("flags", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, flags,                                                             \
+      "how it moves: 1 unbounded, 2 driven, 4 partly driven, 8 anisotropic")                                                     \
+    X("motion", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, motion, "its prescribed motion")                                  \
+    X("position", PLS_F64, 3, PERSISTS, "m", place, pls_body_place, x, "centre of mass")                                         \
+    X("radius", PLS_F64, 1, PERSISTS | FRAME, "m", place, pls_body_place, radius, "bounding radius")                             \
+    X("velocity", PLS_F64, 3, PERSISTS | FRAME, "m/s", place, pls_body_place, vx, "velocity of the centre of mass")              \
+    X("inv_mass", PLS_F64, 1, PERSISTS, "1/kg", load, pls_body_load, inv_mass, "inverse mass, 0 where no force moves it")        \
+    X("angular_velocity", PLS_F64, 3, PERSISTS | FRAME, "rad/s", spin, pls_body_spin, wx, "angular velocity, world frame")       \
+    X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", load, pls_body_load, inv_inertia, "inverse moment of isotropic bodies") \
+    X("orientation", PLS_F64, 4, PERSISTS | FRAME, "", orientation, pls_body_orientation, w,                                     \
+      "unit quaternion w x y z, grain frame to world")                                                                           \
+    X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                            \
+    X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                 \
+    X("energy_damped", PLS_F64, 1, PERSISTS, "J", damped, double, , "half of the energy taken by its contacts' dashpots")        \
+    X("damping_power", PLS_F64, 1, PERSISTS, "W", damping_power, double, , "half of the power taken by its contacts' dashpots")  \
+    X("force_before", PLS_F32, 3, PERSISTS, "N", before, pls_body_before, fx, "force one step earlier")                          \
+    X("torque_before", PLS_F32, 3, PERSISTS, "N m", before, pls_body_before, tx, "torque one step earlier")                      \
+    X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                     \
+    X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                        \
+    X("energy_slid", PLS_F64, 1, PERSISTS, "J", slid, double, , "half of the energy taken by sliding at its contacts")           \
     X("scale", PLS_F64, 1, PERSISTS, "", scale, double, , "multiplies the lengths of its shape")
 
 /// Zero-initialise; `pls_bodies_free` releases.

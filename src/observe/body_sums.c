@@ -114,8 +114,8 @@ static void add_body(const pls_selection *selection, uint32_t row, bool with_sol
     bool of_group = selection->group == 0 || bodies->kind[row].group == selection->group;
     if (with_solid && bounded && of_group) sums->solid += solid_volume(selection, row); // also of bodies that only reach into the box
     if (!pls_selection_has_body(selection, row)) return;
-    sums->damped += bodies->energy[row].damped;
-    sums->slid += bodies->energy[row].slid;
+    sums->damped += bodies->damped[row];
+    sums->slid += bodies->slid[row];
     if (!bounded) return;
     sums->bounded += 1;
     add_motion(selection, row, sums);

@@ -50,7 +50,8 @@ static void fill_entry(const pls_world *world, const pls_pair_section *section, 
     e->force = pls_vec(slot[0], slot[1], slot[2]);
 
     const pls_law *law = &world->laws.law[section->law];
-    const double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
+    double history[3 + PLS_LAW_MAX_HISTORY];
+    pls_pair_history_read(list, section, c, history);
     double mass_sum = b->load[i].inv_mass + b->load[j].inv_mass;
     pls_contact_point point = {.delta = fmax(e->delta, 0.0),
                                .effective_radius = effective_radius,

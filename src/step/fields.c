@@ -35,7 +35,6 @@ enum body_columns {
 #define OFFSET_EMPTY_pls_body_orientation(member) offsetof(pls_body_orientation, member)
 #define OFFSET_EMPTY_pls_body_load(member)        offsetof(pls_body_load, member)
 #define OFFSET_EMPTY_pls_body_before(member)      offsetof(pls_body_before, member)
-#define OFFSET_EMPTY_pls_body_energy(member)      offsetof(pls_body_energy, member)
 #define OFFSET_EMPTY_pls_body_mass(member)        offsetof(pls_body_mass, member)
 #define OFFSET_EMPTY_pls_body_kind(member)        offsetof(pls_body_kind, member)
 

@@ -21,8 +21,8 @@ enum {
 static void add_body(const pls_world *world, uint32_t row, double *sum)
 {
     const pls_bodies *b = &world->bodies;
-    sum[DAMPED] += b->energy[row].damped;
-    sum[SLID] += b->energy[row].slid;
+    sum[DAMPED] += b->damped[row];
+    sum[SLID] += b->slid[row];
     if (b->kind[row].flags & PLS_BODY_UNBOUNDED) return;
     const pls_body_place *p = &b->place[row];
     const pls_body_mass *m = &b->mass[row];

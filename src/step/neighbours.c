@@ -99,7 +99,7 @@ pls_status pls_neighbours_detach(pls_world *world)
 {
     if (!world->memory_holds && world->list.count > 0)
     {
-        PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->laws, &world->memory));
+        PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->memory));
         world->memory_holds = true;
     }
     world->list.stale = true;
@@ -158,7 +158,8 @@ pls_status pls_neighbours_refresh(pls_world *world)
     PLS_TRY(pls_neighbours_detach(world));
     tune_skin(world);
     if (world->def.reorder && list->builds % builds_per_order == 0) PLS_TRY(order_bodies(world));
-    PLS_TRY(pls_pair_list_build(list, &world->bodies, &world->domain, &world->laws, world->tuner.skin, &world->memory));
+    PLS_TRY(
+        pls_pair_list_build(list, &world->bodies, &world->domain, &world->laws, world->tuner.skin, world->state_count > 0, &world->memory));
     set_wall_depths(world);
     world->memory_holds = false;
     pls_contact_memory_free(&world->memory); // as large as the list itself, and idle until the next

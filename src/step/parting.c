@@ -66,7 +66,8 @@ static struct pls_parted parted_of(const pls_world *world, const pls_pair_sectio
     const pls_pair_list *list = &world->list;
     const pls_bodies *b = &world->bodies;
     const pls_law *law = &world->laws.law[section->law];
-    const double *history = list->history + section->history + (c - section->first) * (size_t)section->stride;
+    double history[3 + PLS_LAW_MAX_HISTORY];
+    pls_pair_history_read(list, section, c, history);
     uint32_t i = list->row_i[c], j = list->row_j[c];
     double ri = b->place[i].radius, rj = b->place[j].radius, inv_mass = b->load[i].inv_mass + b->load[j].inv_mass, normal, shear;
     pls_vec3 spring = pls_add(pls_vec(history[0], history[1], history[2]), pls_scale(slip_of(world, section, c), 0.5 * world->dt));
@@ -108,8 +109,8 @@ pls_status pls_book_parted(pls_world *world)
     if (found > 1) qsort(world->parted, found, sizeof *world->parted, by_numbers);
     for (size_t k = 0; k < found; ++k)
     {
-        world->bodies.energy[world->parted[k].row_i].slid += 0.5 * world->parted[k].energy;
-        world->bodies.energy[world->parted[k].row_j].slid += 0.5 * world->parted[k].energy;
+        world->bodies.slid[world->parted[k].row_i] += 0.5 * world->parted[k].energy;
+        world->bodies.slid[world->parted[k].row_j] += 0.5 * world->parted[k].energy;
     }
     return PLS_OK;
 }

@@ -26,7 +26,7 @@ static pls_status contact_table(pls_world *world, pls_contact_memory *memory)
         memory->count = world->memory.count;
     }
     else if (world->list.count > 0)
-        PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->laws, memory));
+        PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, memory));
     if (memory->count > 1) qsort(memory->entry, memory->count, sizeof *memory->entry, by_numbers);
     return PLS_OK;
 }

@@ -1,4 +1,4 @@
-// velocity_verlet_simd.c -- velocity Verlet for bodies (P1 section 4.2.2), one body at a time, a row of four numbers per instruction.
+// velocity_verlet_simd.c -- velocity Verlet for bodies (P1 section 4.2.2), a vector of bodies at a time.
 //
 //     begin    u = v + dt/2 a(t)        x += dt u        q <- rotation by dt u_w        lead = dt/4 (a(t) + a(t - dt))
 //     finish   a = F/m                  v = u + dt/2 a
@@ -12,94 +12,181 @@
 
 #include "step/velocity_verlet.h"
 
-static const pls_v4i first_three = {-1, -1, -1, 0};
+// ---- a vector of bodies ---------------------------------------------------------------------------------------------------------------------------------
 
-static inline pls_v4 only_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a & first_three); }
-
-static inline void turn(pls_body_orientation *orientation, pls_v4 w, double half)
+/// Rows first .. first + count, count <= PLS_W; what is beyond repeats the first and is not stored.
+typedef struct group
 {
-    double x = half * w[0], y = half * w[1], z = half * w[2];
-    double qw = orientation->w, qx = orientation->x, qy = orientation->y, qz = orientation->z;
-    pls_v4 q = {qw - x * qx - y * qy - z * qz, qx + x * qw + y * qz - z * qy, qy - x * qz + y * qw + z * qx, qz + x * qy - y * qx + z * qw};
-    // 1/|q| from |q|^2 = 1 + e; a body turns little in a step, so the series is exact to round-off nearly always.
-    double e = (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]) - 1.0;
-    double scale = e < 1e-4 && e > -1e-4 ? 1.0 - e * (0.5 - e * (0.375 - e * 0.3125)) : 1.0 / sqrt(1.0 + e);
-    pls_v4_store(&orientation->w, pls_v4_set(scale) * q);
+    pls_bodies *bodies;
+    size_t first;
+    int count;
+    pls_vd place[8]; ///< x y z r | v, lead_z
+    pls_vd spin[8];  ///< w, lead_x | w of the end, lead_y
+    pls_vd load[8];  ///< F, 1/m | T, 1/I
+} group;
+
+static inline size_t row_of(const group *g, int lane) { return g->first + (size_t)(lane < g->count ? lane : 0); }
+
+static inline __attribute__((always_inline)) void load_motion(group *g)
+{
+    pls_v8 place[PLS_W];
+    pls_v4 spin[PLS_W];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane)
+    {
+        place[lane] = pls_v8_load(&g->bodies->place[row_of(g, lane)].x);
+        spin[lane] = pls_v4_load(&g->bodies->spin[row_of(g, lane)].wx);
+    }
+    pls_columns8(place, g->place);
+    pls_columns4(spin, g->spin);
 }
+
+/// Positions and velocities back; with `within` the spins of the end and the leads too.
+static inline __attribute__((always_inline)) void store_motion(const group *g, int within)
+{
+    double *place[PLS_W], *spin[PLS_W];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane)
+    {
+        place[lane] = &g->bodies->place[row_of(g, lane)].x;
+        spin[lane] = &g->bodies->spin[row_of(g, lane)].wx;
+    }
+    pls_rows8(g->place, place, g->count);
+    if (within)
+        pls_rows8(g->spin, spin, g->count);
+    else
+        pls_rows4(g->spin, spin, g->count);
+}
+
+static inline pls_vd column_load(const group *g, const double *column)
+{
+    if (g->count == PLS_W) return pls_vd_load(column + g->first);
+    pls_vd out = pls_vd_set(0.0);
+    for (int lane = 0; lane < g->count; ++lane) out[lane] = column[g->first + (size_t)lane];
+    return out;
+}
+
+static inline void column_store(const group *g, double *column, pls_vd a)
+{
+    if (g->count == PLS_W)
+        pls_vd_store(column + g->first, a);
+    else
+        for (int lane = 0; lane < g->count; ++lane) column[g->first + (size_t)lane] = a[lane];
+}
+
+// ---- the beginning of a step ---------------------------------------------------------------------------------------------------------------------------
 
 typedef struct drift_sums
 {
-    pls_v4 largest; ///< squared components of displacements
-    pls_v4 poison;
+    pls_vd largest[3]; ///< squared components of displacements
+    pls_vd poison;
 } drift_sums;
-
-static inline __attribute__((always_inline)) void begin_row(pls_bodies *bodies, size_t row, double dt, drift_sums *sums)
-{
-    const double half = 0.5 * dt, quarter = 0.25 * dt;
-    pls_body_place *p = &bodies->place[row];
-    pls_body_spin *s = &bodies->spin[row];
-    const pls_body_load *now = &bodies->load[row];
-    pls_f8 *before = (pls_f8 *)&bodies->before[row];
-    pls_v4 x = pls_v4_load(&p->x), v = pls_v4_load(&p->vx), w = pls_v4_load(&s->wx);
-    pls_v4 f = pls_v4_load(&now->fx), t = pls_v4_load(&now->tx);
-    pls_v8 old = __builtin_convertvector(*before, pls_v8);
-    pls_v4 a = only_first_three(f * now->inv_mass), b = only_first_three(t * now->inv_inertia);
-    pls_v4 a_last = only_first_three(pls_v8_low(old) * now->inv_mass), b_last = only_first_three(pls_v8_high(old) * now->inv_inertia);
-    *before = __builtin_convertvector(pls_v8_join(only_first_three(f), only_first_three(t)), pls_f8);
-
-    pls_v4 u = v + half * a, uw = w + half * b;
-    pls_v4 step = only_first_three(dt * u), lead = quarter * (a + a_last), end = uw + quarter * (b + b_last);
-    u[3] = lead[2];
-    uw[3] = lead[0];
-    end[3] = lead[1];
-    pls_v4_store(&p->x, x + step);
-    pls_v4_store(&p->vx, u);
-    pls_v4_store(&s->wx, uw);
-    pls_v4_store(&s->end_x, end);
-    turn(&bodies->orientation[row], uw, half);
-
-    pls_v4 square = step * step;
-    sums->largest = pls_v4_pick((pls_v4i)(sums->largest > square), sums->largest, square);
-    sums->poison += square * 0.0 + only_first_three(uw) * 0.0;
-}
 
 static inline void report_drift(const drift_sums *sums, pls_drift_report *report)
 {
-    report->largest_square = sums->largest[0] + sums->largest[1] + sums->largest[2];
-    report->poison = sums->poison[0] + sums->poison[1] + sums->poison[2];
+    *report = (pls_drift_report){0.0, 0.0};
+    for (int a = 0; a < 3; ++a)
+    {
+        double largest = 0.0;
+        for (int lane = 0; lane < PLS_W; ++lane) largest = sums->largest[a][lane] > largest ? sums->largest[a][lane] : largest;
+        report->largest_square += largest;
+    }
+    for (int lane = 0; lane < PLS_W; ++lane) report->poison += sums->poison[lane]; // zeros, or NaN: no order to keep
+}
+
+/// q <- (1, dt/2 w) q, of length one.
+static inline __attribute__((always_inline)) void turn(const group *g, const pls_vd w[3], double half)
+{
+    pls_v4 row[PLS_W];
+    double *out[PLS_W];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane)
+    {
+        out[lane] = &g->bodies->orientation[row_of(g, lane)].w;
+        row[lane] = pls_v4_load(out[lane]);
+    }
+    pls_vd o[4], q[4], x = half * w[0], y = half * w[1], z = half * w[2];
+    pls_columns4(row, o);
+    q[0] = o[0] - x * o[1] - y * o[2] - z * o[3];
+    q[1] = o[1] + x * o[0] + y * o[3] - z * o[2];
+    q[2] = o[2] - x * o[3] + y * o[0] + z * o[1];
+    q[3] = o[3] + x * o[2] - y * o[1] + z * o[0];
+    // 1/|q| from |q|^2 = 1 + e; a body turns little in a step, so the series is exact to round-off nearly always.
+    const pls_vd little = pls_vd_set(1e-4);
+    pls_vd e = (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]) - 1.0;
+    pls_vd scale = 1.0 - e * (0.5 - e * (0.375 - e * 0.3125));
+    unsigned small = pls_vd_less(e, little) & pls_vd_less(-little, e);
+    if (small != (1u << PLS_W) - 1) scale = pls_vd_choose(small, scale, 1.0 / pls_vd_sqrt(1.0 + e));
+    for (int c = 0; c < 4; ++c) q[c] = scale * q[c];
+    pls_rows4(q, out, g->count);
+}
+
+/// From forces and velocities of now; remembers the forces.
+static inline __attribute__((always_inline)) void begin(group *g, double dt, drift_sums *sums)
+{
+    const double half = 0.5 * dt, quarter = 0.25 * dt;
+    const pls_i8 no_spare = {-1, -1, -1, 0, -1, -1, -1, 0};
+    pls_v8 last[PLS_W];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane)
+        last[lane] = __builtin_convertvector(*(const pls_f8 *)&g->bodies->before[row_of(g, lane)], pls_v8);
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane)
+        if (lane < g->count)
+            *(pls_f8 *)&g->bodies->before[row_of(g, lane)] =
+                (pls_f8)(no_spare & (pls_i8) __builtin_convertvector(pls_v8_load(&g->bodies->load[row_of(g, lane)].fx), pls_f8));
+    pls_vd old[8], lead[3], u[3], uw[3];
+    pls_columns8(last, old);
+    for (int a = 0; a < 3; ++a)
+    {
+        pls_vd acceleration = g->load[a] * g->load[3], angular = g->load[4 + a] * g->load[7];
+        lead[a] = quarter * (acceleration + old[a] * g->load[3]);
+        u[a] = g->place[4 + a] + half * acceleration;
+        uw[a] = g->spin[a] + half * angular;
+        g->spin[4 + a] = uw[a] + quarter * (angular + old[4 + a] * g->load[7]);
+        pls_vd step = dt * u[a], square = step * step;
+        g->place[a] = g->place[a] + step;
+        g->place[4 + a] = u[a];
+        g->spin[a] = uw[a];
+        sums->largest[a] = pls_vd_pick((pls_vi)(sums->largest[a] > square), sums->largest[a], square);
+        sums->poison = sums->poison + (square * 0.0 + uw[a] * 0.0);
+    }
+    g->spin[3] = lead[0];
+    g->spin[7] = lead[1];
+    g->place[7] = lead[2];
+    turn(g, uw, half);
 }
 
 void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report)
 {
-    drift_sums sums = {pls_v4_set(0.0), pls_v4_set(0.0)};
-    for (size_t row = first; row < last; ++row) begin_row(bodies, row, dt, &sums);
+    drift_sums sums = {0};
+    for (size_t row = first; row < last; row += PLS_W)
+    {
+        group g = {.bodies = bodies, .first = row, .count = last - row < PLS_W ? (int)(last - row) : PLS_W};
+        load_motion(&g);
+        pls_v8 load[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane) load[lane] = pls_v8_load(&bodies->load[row_of(&g, lane)].fx);
+        pls_columns8(load, g.load);
+        begin(&g, dt, &sums);
+        store_motion(&g, 1);
+    }
     report_drift(&sums, report);
 }
 
-typedef struct gathered
-{
-    pls_v4 force, torque;
-    pls_v2 booked; ///< power taken by dashpots, work taken by sliding
-} gathered;
+// ---- the end of a step ----------------------------------------------------------------------------------------------------------------------------------
 
-/// List the touching entries of a row anew.
+/// List the candidates of a row that touch anew.
 static __attribute__((noinline)) void list_touching(pls_pair_list *list, size_t row)
 {
-    uint32_t count = 0, *to = list->near_entry + list->pairs.start[row];
-    for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k)
-        if (pls_pair_touches(list, list->pairs.entry[k] >> 1)) to[count++] = list->pairs.entry[k];
-    list->near_count[row] = count;
-    list->near_stale[row] = 0;
-}
-
-static inline void add_pair(const pls_pair_list *list, uint32_t entry, double radius, gathered *g)
-{
-    const double *slot = list->slot + (size_t)(entry >> 1) * PLS_SLOT;
-    const int64_t sign = (int64_t)((uint64_t)entry << 63);
-    pls_v4 low = pls_v4_load(slot), high = pls_v4_load(slot + 4);
-    g->force += (pls_v4)((pls_v4i)low ^ (pls_v4i){sign, sign, sign, sign});
-    g->torque += (radius - low[3]) * only_first_three(high);
-    g->booked += __builtin_convertvector(*(const pls_f2 *)(slot + 7), pls_v2);
+    uint32_t *head = pls_near_row(list, row), *to = head + PLS_NEAR_HEAD, *from = to;
+    const uint32_t *entry = list->pairs.entry, first = list->pairs.start[row], last = list->pairs.start[row + 1];
+    for (unsigned side = 2; side-- > 0; from = to) // partners with lower numbers come first: the body is j there
+    {
+        for (uint32_t k = first; k < last; ++k)
+            if ((entry[k] & 1) == side && pls_pair_touches(list, entry[k] >> 1)) *to++ = entry[k] >> 1;
+        while ((to - from) % PLS_NEAR_QUAD != 0) *to++ = (uint32_t)pls_zero_slot(list);
+        head[1 - side] = (uint32_t)(to - from);
+    }
 }
 
 enum {
@@ -109,78 +196,106 @@ enum {
 
 static inline void fetch_slots(const pls_pair_list *list, size_t row)
 {
-    const uint32_t *entry = list->near_entry + list->pairs.start[row];
-    for (int k = 0; k < ENTRIES_AHEAD; ++k) __builtin_prefetch(list->slot + (size_t)(entry[k] >> 1) * PLS_SLOT);
+    const uint32_t *entry = pls_near_row(list, row) + PLS_NEAR_HEAD;
+    for (int k = 0; k < ENTRIES_AHEAD; ++k) __builtin_prefetch(list->slot + (size_t)entry[k] * PLS_SLOT);
 }
 
-static inline void gather_pairs(pls_pair_list *list, size_t row, double radius, gathered *g)
+static inline pls_v8 slot_of(const pls_pair_list *list, uint32_t candidate)
 {
-    if (list->near_stale[row]) list_touching(list, row);
-    const uint32_t *entry = list->near_entry + list->pairs.start[row], *end = entry + list->near_count[row];
-    for (; entry < end; ++entry) add_pair(list, *entry, radius, g);
+    return pls_v8_load(list->slot + (size_t)candidate * PLS_SLOT);
 }
 
-static inline void gather_walls(const pls_pair_list *list, size_t row, gathered *g)
+/// The same with the torque about the centre of i (side 1) or j (side -1).
+static inline pls_v8 skewed_slot_of(const pls_pair_list *list, uint32_t candidate, double side)
+{
+    double lever = 1.0 + side * list->skew[candidate];
+    return (pls_v8){1.0, 1.0, 1.0, 1.0, lever, lever, lever, 1.0} * slot_of(list, candidate);
+}
+
+/// Force, power of dashpots, torque, work of sliders: what the contacts of a body come to, in order of the partners' numbers.
+static inline __attribute__((always_inline)) pls_v8 gather_pairs(pls_pair_list *list, size_t row, int skewed)
+{
+    const uint32_t *head = pls_near_row(list, row), *entry = head + PLS_NEAR_HEAD;
+    if (head[0] == PLS_NEAR_STALE) list_touching(list, row);
+    pls_v8 sum = {0.0};
+    const uint32_t *end = entry + head[0];
+    for (; entry < end; entry += PLS_NEAR_QUAD)
+#pragma GCC unroll 4
+        for (int k = 0; k < PLS_NEAR_QUAD; ++k) sum += skewed ? skewed_slot_of(list, entry[k], -1.0) : slot_of(list, entry[k]);
+    sum = (pls_v8)((pls_v8i)sum ^ (pls_v8i){INT64_MIN, INT64_MIN, INT64_MIN, 0, 0, 0, 0, 0});
+    for (end += head[1]; entry < end; entry += PLS_NEAR_QUAD)
+#pragma GCC unroll 4
+        for (int k = 0; k < PLS_NEAR_QUAD; ++k) sum += skewed ? skewed_slot_of(list, entry[k], 1.0) : slot_of(list, entry[k]);
+    return sum;
+}
+
+static inline void gather_walls(const pls_pair_list *list, size_t row, pls_v8 *sum)
 {
     for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
     {
         uint32_t entry = list->walls.entry[k];
-        if (!pls_pair_touches(list, entry >> 1)) continue;
-        const double *slot = pls_wall_slot(list, entry >> 1);
-        pls_v4 force = pls_v4_load(slot);
-        if (entry & 1)
-        {
-            g->force -= force;
-            g->torque += pls_v4_load(slot + 8);
-        }
-        else
-        {
-            g->force += force;
-            g->torque += pls_v4_load(slot + 4);
-        }
-        g->booked += (pls_v2){slot[3], slot[7]};
+        if (pls_pair_touches(list, entry >> 1)) *sum += pls_v8_load(pls_wall_slot(list, entry >> 1) + (entry & 1) * 8);
     }
 }
 
-static inline void finish_row(pls_bodies *bodies, size_t row, double dt, const gathered *g)
+/// Velocities of the end from the sums of the contacts' slots and body forces; what contacts took is booked, half to either body.
+static inline __attribute__((always_inline)) void finish(group *g, const pls_v8 sum[PLS_W], double dt)
 {
     const double half = 0.5 * dt;
-    pls_body_place *p = &bodies->place[row];
-    pls_body_spin *s = &bodies->spin[row];
-    pls_body_load *load = &bodies->load[row];
-    pls_body_energy *energy = &bodies->energy[row];
-    pls_v4 f = only_first_three(g->force), t = only_first_three(g->torque);
-    pls_v4_store(&p->vx, pls_v4_load(&p->vx) + half * (f * load->inv_mass));
-    pls_v4_store(&s->wx, pls_v4_load(&s->wx) + half * (t * load->inv_inertia));
-    f[3] = load->inv_mass;
-    t[3] = load->inv_inertia;
-    pls_v4_store(&load->fx, f);
-    pls_v4_store(&load->tx, t);
+    const pls_v8i all = {-1, -1, -1, 0, -1, -1, -1, 0};
+    pls_bodies *b = g->bodies;
+    pls_v8 load[PLS_W];
+    pls_vd total[8];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane)
+    {
+        pls_v8 *row = (pls_v8 *)&b->load[row_of(g, lane)].fx;
+        load[lane] = (pls_v8)(((pls_v8i)sum[lane] & all) | ((pls_v8i)*row & ~all));
+        if (lane < g->count) *row = load[lane];
+    }
+    pls_columns8(load, g->load);
+    pls_columns8(sum, total);
+    for (int a = 0; a < 3; ++a)
+    {
+        g->place[4 + a] = g->place[4 + a] + half * (g->load[a] * g->load[3]);
+        g->spin[a] = g->spin[a] + half * (g->load[4 + a] * g->load[7]);
+    }
+    pls_vd power = 0.5 * total[3];
+    column_store(g, b->damped, column_load(g, b->damped) + half * (column_load(g, b->damping_power) + power));
+    column_store(g, b->damping_power, power);
+    column_store(g, b->slid, column_load(g, b->slid) + 0.5 * total[7]);
+}
 
-    double power = 0.5 * g->booked[0]; // half of each contact's dissipation to either body
-    energy->damped += half * (energy->power + power);
-    energy->power = power;
-    energy->slid += 0.5 * g->booked[1];
+static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt,
+                                                              const double *force, const double *torque, int skewed, pls_drift_report *next)
+{
+    drift_sums sums = {0};
+    const bool large = bodies->count > PLS_LARGE_WORLD;
+    for (size_t row = first; row < last; row += PLS_W)
+    {
+        group g = {.bodies = bodies, .first = row, .count = last - row < PLS_W ? (int)(last - row) : PLS_W};
+        pls_v8 sum[PLS_W] = {0};
+        for (int lane = 0; lane < g.count; ++lane)
+        {
+            size_t k = row + (size_t)lane;
+            if (large) fetch_slots(list, k + ROWS_AHEAD);
+            sum[lane] = gather_pairs(list, k, skewed);
+            gather_walls(list, k, &sum[lane]);
+            if (force) sum[lane] += pls_v8_join(pls_v4_load(force + 4 * (k - first)), pls_v4_load(torque + 4 * (k - first)));
+        }
+        load_motion(&g);
+        finish(&g, sum, dt);
+        if (next) begin(&g, dt, &sums);
+        store_motion(&g, next != NULL);
+    }
+    if (next) report_drift(&sums, next);
 }
 
 void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
                                  const double *torque, pls_drift_report *next)
 {
-    drift_sums sums = {pls_v4_set(0.0), pls_v4_set(0.0)};
-    const bool large = bodies->count > PLS_LARGE_WORLD;
-    for (size_t row = first; row < last; ++row)
-    {
-        gathered g = {pls_v4_set(0.0), pls_v4_set(0.0), {0.0, 0.0}};
-        if (force)
-        {
-            g.force = pls_v4_load(force + 4 * (row - first));
-            g.torque = pls_v4_load(torque + 4 * (row - first));
-        }
-        if (large) fetch_slots(list, row + ROWS_AHEAD);
-        gather_pairs(list, row, bodies->place[row].radius, &g);
-        gather_walls(list, row, &g);
-        finish_row(bodies, row, dt, &g);
-        if (next) begin_row(bodies, row, dt, &sums);
-    }
-    if (next) report_drift(&sums, next);
+    if (list->equal_radii)
+        finish_rows(bodies, list, first, last, dt, force, torque, 0, next);
+    else
+        finish_rows(bodies, list, first, last, dt, force, torque, 1, next);
 }

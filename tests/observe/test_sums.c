@@ -134,8 +134,8 @@ static void dissipation_is_shared_by_groups_without_loss(void **state)
     for (uint32_t k = 0; k < 10; ++k)
     {
         uint32_t row = add(&s, pls_vec(k, 0, 0), k == 3 ? (double)INFINITY : 0.5, 1, 1 + k % 2);
-        s.bodies.energy[row].damped = k;
-        s.bodies.energy[row].slid = 100 * k;
+        s.bodies.damped[row] = k;
+        s.bodies.slid[row] = 100 * k;
     }
     double damped = 0;
     double slid = 0;
