@@ -329,7 +329,10 @@ static pls_status look_block(const grids *g, size_t block, look_buffer *out)
     return PLS_OK;
 }
 
-/// Bring the blocks' pairs into order of owner row, then partner number.
+static uint32_t lower_row(const pls_near_pair *pair) { return pair->owner < pair->partner ? pair->owner : pair->partner; }
+static uint32_t upper_row(const pls_near_pair *pair) { return pair->owner < pair->partner ? pair->partner : pair->owner; }
+
+/// Bring the blocks' pairs into order of the lower row, then of the other.
 static pls_status order_pairs(const grids *g, const look_buffer *buffer, size_t blocks, pls_near_pairs *pairs)
 {
     size_t total = 0, rows = g->bodies->count;
@@ -340,11 +343,10 @@ static pls_status order_pairs(const grids *g, const look_buffer *buffer, size_t 
     uint32_t *start = NULL;
     PLS_TRY(pls_allocate(&start, rows + 2, sizeof *start, "ordering near pairs"));
     for (size_t b = 0; b < blocks; ++b)
-        for (size_t k = 0; k < buffer[b].count; ++k) ++start[buffer[b].pair[k].owner + 2];
+        for (size_t k = 0; k < buffer[b].count; ++k) ++start[lower_row(&buffer[b].pair[k]) + 2];
     for (size_t row = 2; row < rows + 2; ++row) start[row] += start[row - 1];
     for (size_t b = 0; b < blocks; ++b)
-        for (size_t k = 0; k < buffer[b].count; ++k) pairs->pair[start[buffer[b].pair[k].owner + 1]++] = buffer[b].pair[k];
-    const pls_body_kind *kind = g->bodies->kind;
+        for (size_t k = 0; k < buffer[b].count; ++k) pairs->pair[start[lower_row(&buffer[b].pair[k]) + 1]++] = buffer[b].pair[k];
 #pragma omp parallel for schedule(static)
     for (size_t row = 0; row < rows; ++row)
     {
@@ -353,9 +355,9 @@ static pls_status order_pairs(const grids *g, const look_buffer *buffer, size_t 
         for (size_t k = 1; k < n; ++k) // short rows, nearly in order
         {
             pls_near_pair moving = p[k];
-            uint32_t key = kind[moving.partner].number;
+            uint32_t key = upper_row(&moving);
             size_t m = k;
-            for (; m > 0 && kind[p[m - 1].partner].number > key; --m) p[m] = p[m - 1];
+            for (; m > 0 && upper_row(&p[m - 1]) > key; --m) p[m] = p[m - 1];
             p[m] = moving;
         }
     }

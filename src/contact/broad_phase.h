@@ -15,7 +15,7 @@ typedef struct pls_near_pair
 /// Zero-initialise; `pls_near_pairs_free` releases.
 typedef struct pls_near_pairs
 {
-    pls_near_pair *pair; ///< in order of owner row, then partner number
+    pls_near_pair *pair; ///< in order of the lower of the two rows, then of the other
     size_t count, capacity;
 } pls_near_pairs;
 

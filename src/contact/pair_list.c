@@ -194,12 +194,14 @@ static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
     return PLS_OK;
 }
 
-static pls_status cut_blocks(pls_pair_list *list)
+static uint32_t lower_row(const pls_pair_list *list, size_t c) { return list->row_i[c] < list->row_j[c] ? list->row_i[c] : list->row_j[c]; }
+
+static pls_status cut_sections(pls_pair_list *list, bool walls)
 {
-    list->block_count = 0;
     for (size_t s = 0; s < list->section_count; ++s)
     {
         const pls_pair_section *section = &list->section[s];
+        if (section->wall != walls) continue;
         size_t blocks = pls_block_count(section->count, PLS_CONTACT_BLOCK);
         PLS_TRY(
             pls_reserve(&list->block, &list->block_capacity, list->block_count + blocks, sizeof *list->block, "blocks of the pair list"));
@@ -209,6 +211,61 @@ static pls_status cut_blocks(pls_pair_list *list)
                                  .first = section->first + b * PLS_CONTACT_BLOCK,
                                  .count = (uint32_t)(pls_block_end(b, PLS_CONTACT_BLOCK, section->count) - b * PLS_CONTACT_BLOCK)};
     }
+    return PLS_OK;
+}
+
+/// Blocks of several sections of pairs, in order of their first rows.
+static pls_status order_blocks(pls_pair_list *list)
+{
+    size_t count = list->block_count - list->wall_blocks;
+    if (list->section_count < 2 || count < 2) return PLS_OK;
+    pls_pair_block *mine = list->block + list->wall_blocks, *copy = NULL;
+    uint32_t *keys = NULL, *order = NULL;
+    pls_status status = pls_allocate(&keys, count, sizeof *keys, "blocks of the pair list");
+    if (status == PLS_OK) status = pls_allocate(&order, count, sizeof *order, "blocks of the pair list");
+    if (status == PLS_OK) status = pls_allocate(&copy, count, sizeof *copy, "blocks of the pair list");
+    for (size_t b = 0; status == PLS_OK && b < count; ++b)
+    {
+        keys[b] = lower_row(list, mine[b].first);
+        order[b] = (uint32_t)b;
+        copy[b] = mine[b];
+    }
+    if (status == PLS_OK) status = pls_radix_sort_u32(keys, order, count);
+    for (size_t b = 0; status == PLS_OK && b < count; ++b) mine[b] = copy[order[b]];
+    pls_release(&keys);
+    pls_release(&order);
+    pls_release(&copy);
+    return status;
+}
+
+static pls_status cut_blocks(pls_pair_list *list)
+{
+    list->block_count = 0;
+    PLS_TRY(cut_sections(list, true));
+    list->wall_blocks = list->block_count;
+    PLS_TRY(cut_sections(list, false));
+    return order_blocks(list);
+}
+
+/// When the pairs of each group of rows are done with.
+static pls_status bound_groups(pls_pair_list *list, size_t rows)
+{
+    size_t groups = pls_block_count(rows, PLS_ROW_GROUP), capacity = list->group_capacity;
+    PLS_TRY(pls_reserve(&list->group_first, &capacity, groups, sizeof *list->group_first, "groups of rows"));
+    capacity = list->group_capacity;
+    PLS_TRY(pls_reserve(&list->group_last, &capacity, groups, sizeof *list->group_last, "groups of rows"));
+    list->group_capacity = capacity;
+    for (size_t g = 0; g < groups; ++g) list->group_first[g] = UINT32_MAX, list->group_last[g] = 0;
+    for (size_t b = list->wall_blocks; b < list->block_count; ++b)
+        for (size_t c = list->block[b].first; c < list->block[b].first + list->block[b].count; ++c)
+        {
+            const size_t two[2] = {list->row_i[c] / PLS_ROW_GROUP, list->row_j[c] / PLS_ROW_GROUP};
+            for (int k = 0; k < 2; ++k)
+            {
+                if (list->group_first[two[k]] == UINT32_MAX) list->group_first[two[k]] = (uint32_t)b;
+                list->group_last[two[k]] = (uint32_t)b;
+            }
+        }
     return PLS_OK;
 }
 
@@ -430,6 +487,7 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
     if (status == PLS_OK) status = put_back(list, bodies, memory);
     if (status == PLS_OK) status = gather_rows(&list->pairs, list, bodies, false);
     if (status == PLS_OK) status = gather_rows(&list->walls, list, bodies, true);
+    if (status == PLS_OK) status = bound_groups(list, bodies->count);
     if (status == PLS_OK) status = forget_touching_entries(list, bodies->count);
     if (status == PLS_OK) status = keep_reference(list, bodies);
     if (status != PLS_OK)
@@ -452,13 +510,16 @@ size_t pls_pair_list_bytes(const pls_pair_list *list)
     return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift +
            list->touch_capacity + list->ended_capacity +
            (list->history_capacity + list->slot_capacity + list->skew_capacity) * sizeof(double) +
-           (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity) * sizeof *list->pairs.entry;
+           (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity + 2 * list->group_capacity) *
+               sizeof *list->pairs.entry;
 }
 
 void pls_pair_list_free(pls_pair_list *list)
 {
     pls_release(&list->section);
     pls_release(&list->block);
+    pls_release(&list->group_first);
+    pls_release(&list->group_last);
     pls_release(&list->row_i);
     pls_release(&list->row_j);
     pls_release(&list->shift);

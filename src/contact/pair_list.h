@@ -1,7 +1,7 @@
 // pair_list.h -- the Verlet list: pairs that touch or may soon touch, with what each contact remembers and where its force goes.
 //
 // Candidates are numbered 0 .. count, in sections of one kind of pair and one law; sphere pairs first, wall pairs behind. Within a section they are in order
-// of the memory row of the body with the lower number, then of the partner's number, so that the loop streams. A section begins at a multiple of 8, and so do the
+// of the lower of the two memory rows, so that the loop streams and a body's candidates are done with when the loop has passed its row. A section begins at a multiple of 8, and so do the
 // blocks of work cut from it; the candidates that fill it up are pairs (0, 0) that are never active.
 //
 // Which pairs are listed, and where, depends on the skin and on the order of bodies in memory; what comes of it does not: a candidate that does not touch
@@ -18,6 +18,7 @@ enum {
     PLS_PAIR_REACH = 64,               ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
     PLS_ROW_REACH = 16,                ///< gather rows behind the last body, and entries behind the last one, for loops that fetch ahead
     PLS_LARGE_WORLD = 20000,           ///< bodies from which rows and contacts overflow the near caches, so that fetching ahead pays
+    PLS_ROW_GROUP = 8,                 ///< rows that are finished together
     PLS_SLOT = 8,       ///< doubles in the slot of a sphere pair: F on i (3), power of its dashpots, torque (3), work of its slider
     PLS_WALL_SLOT = 16, ///< doubles in the slot of a wall pair: the same for i, then for the wall
     PLS_NEAR_HEAD = 2,  ///< numbers before the near entries of a row: how many of partners with lower numbers, of higher ones
@@ -59,8 +60,10 @@ typedef struct pls_pair_list
 {
     pls_pair_section *section;
     size_t section_count, section_capacity;
-    pls_pair_block *block;
-    size_t block_count, block_capacity;
+    pls_pair_block *block; ///< those of walls, then those of pairs in order of their first rows
+    size_t block_count, block_capacity, wall_blocks;
+    uint32_t *group_first, *group_last; ///< first and last block with pairs of the PLS_ROW_GROUP rows of a group; none: UINT32_MAX and 0
+    size_t group_capacity;
 
     size_t count;      ///< candidates, fill included
     size_t wall_first; ///< first wall candidate

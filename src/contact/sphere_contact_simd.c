@@ -310,6 +310,7 @@ static inline __attribute__((always_inline)) void carry_springs(const pls_pair_l
                                                                 int whole, int plain)
 {
     const int growing = !plain && in->growing, skewed = !plain && !list->equal_radii;
+    const double dt = in->dt;
     for (size_t k = 0; k < count; k += PLS_W)
     {
         pls_vd n[3], q[3], sum[3], arm[3], turn[3], tilt[3], step[3], spring[3], distance = pls_vd_load(&work->distance[k]);
@@ -320,7 +321,7 @@ static inline __attribute__((always_inline)) void carry_springs(const pls_pair_l
             sum[a] = pls_vd_load(&work->spin[a][k]);
             spring[a] = pls_vd_load(whole ? history + k / 8 * 8 * numbers + k % 8 + 8 * (size_t)a : &work->spring[a][k]);
         }
-        pls_vd qn = dot(q, n), spin = dot(sum, n), ratio = (0.5 * in->dt) * pls_vd_load(&work->inv_distance[k]), less = ratio * qn;
+        pls_vd qn = dot(q, n), spin = dot(sum, n), ratio = (0.5 * dt) * pls_vd_load(&work->inv_distance[k]), less = ratio * qn;
         pls_vd lever = 0.5 * (distance - distance * less);
         if (surface != 0.0)
         {
@@ -340,9 +341,9 @@ static inline __attribute__((always_inline)) void carry_springs(const pls_pair_l
             tilt[a] = lean * q[a];
         }
         cross(turn, arm, n);
-        for (int a = 0; a < 3; ++a) step[a] = in->dt * (turn[a] - ahead * q[a]);
-        carry_spring(spring, n, tilt, (0.5 * in->dt) * spin, step);
-        if (fresh_lanes(work, k)) begin_springs(work, k, in->dt, fresh_lanes(work, k), step, spring);
+        for (int a = 0; a < 3; ++a) step[a] = dt * (turn[a] - ahead * q[a]);
+        carry_spring(spring, n, tilt, (0.5 * dt) * spin, step);
+        if (fresh_lanes(work, k)) begin_springs(work, k, dt, fresh_lanes(work, k), step, spring);
         for (int a = 0; a < 3; ++a) pls_vd_store(&work->spring[a][k], spring[a]);
     }
 }
@@ -354,7 +355,7 @@ static inline __attribute__((always_inline)) void answer_linear(const pls_pair_l
                                                                 const pls_pair_section *section, const pls_pair_block *block,
                                                                 double *history, pls_contact_work *work)
 {
-    const double *constants = in->laws->law[section->law].constants;
+    const pls_linear_values law = pls_linear_take(in->laws->law[section->law].constants, in->dt);
     for (size_t k = 0; k < block->count; k += PLS_W)
     {
         const size_t c = block->first + k;
@@ -367,7 +368,7 @@ static inline __attribute__((always_inline)) void answer_linear(const pls_pair_l
             spring[a] = pls_vd_load(&work->spring[a][k]);
         }
         pls_linear_lanes out;
-        pls_linear_answer(constants, in->dt, pls_vd_load(&work->delta[k]), pls_vd_load(&work->normal_velocity[k]), v, spring, &out);
+        pls_linear_answer(&law, pls_vd_load(&work->delta[k]), pls_vd_load(&work->normal_velocity[k]), v, spring, &out);
         for (int a = 0; a < 3; ++a)
         {
             pls_vd_store(stored + 8 * a, pls_vd_choose(touching, out.spring[a], pls_vd_load(stored + 8 * a)));

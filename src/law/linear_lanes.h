@@ -12,6 +12,19 @@
 #include "law/linear.h"
 #include "math/simd.h"
 
+/// The constants by value, so that compilers keep them in registers.
+typedef struct pls_linear_values
+{
+    double kn, ks, cn, cs, mu, minus_inv_ks, floor_force, half_ks, dt;
+} pls_linear_values;
+
+static inline pls_linear_values pls_linear_take(const double *constants, double dt)
+{
+    return (pls_linear_values){constants[PLS_LINEAR_KN],    constants[PLS_LINEAR_KS],       constants[PLS_LINEAR_CN],
+                               constants[PLS_LINEAR_CS],    constants[PLS_LINEAR_MU],       -constants[PLS_LINEAR_INV_KS],
+                               constants[PLS_LINEAR_FLOOR], 0.5 * constants[PLS_LINEAR_KS], dt};
+}
+
 typedef struct pls_linear_lanes
 {
     pls_vd normal_force;   ///< [N]
@@ -22,36 +35,33 @@ typedef struct pls_linear_lanes
 } pls_linear_lanes;
 
 /// v: slip velocity [m/s]; s: spring had it not slid [m].
-static inline __attribute__((always_inline)) void pls_linear_answer(const double *constants, double dt, pls_vd delta, pls_vd vn,
+static inline __attribute__((always_inline)) void pls_linear_answer(const pls_linear_values *law, pls_vd delta, pls_vd vn,
                                                                     const pls_vd v[3], const pls_vd s[3], pls_linear_lanes *out)
 {
-    const double kn = constants[PLS_LINEAR_KN], ks = constants[PLS_LINEAR_KS], cn = constants[PLS_LINEAR_CN], cs = constants[PLS_LINEAR_CS];
-    const double mu = constants[PLS_LINEAR_MU], inv_ks = constants[PLS_LINEAR_INV_KS], floor_force = constants[PLS_LINEAR_FLOOR];
-    const pls_vd zero = pls_vd_set(0.0), tiny = pls_vd_set(1e-300);
-    pls_vd spring_force = kn * delta, fn = pls_vd_max(spring_force + cn * vn, pls_vd_set(floor_force));
-    pls_vd dash[3], f[3];
+    const pls_vd tiny = pls_vd_set(1e-300);
+    pls_vd spring_force = law->kn * delta, fn = pls_vd_max(spring_force + law->cn * vn, pls_vd_set(law->floor_force));
+    pls_vd dash[3], trial[3]; // minus the forces
     for (int a = 0; a < 3; ++a)
     {
-        dash[a] = cs * v[a];
-        f[a] = -(ks * s[a]) - dash[a];
+        dash[a] = law->cs * v[a];
+        trial[a] = law->ks * s[a] + dash[a];
     }
-    pls_vd cone = mu * pls_vd_max(fn, -fn);
-    pls_vd shear = pls_vd_sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
-    pls_vi slides = (pls_vi)(shear > cone);
-    pls_vd factor = cone / pls_vd_max(pls_vd_max(shear, cone), tiny); // exactly 1 where nothing slides
-    pls_vd work = zero, power = (fn - spring_force) * vn;
+    pls_vd cone = law->mu * pls_vd_max(fn, -fn);
+    pls_vd shear = pls_vd_sqrt(trial[0] * trial[0] + trial[1] * trial[1] + trial[2] * trial[2]);
+    const unsigned slides = pls_vd_less(cone, shear);
+    pls_vd factor = -(cone / pls_vd_max(pls_vd_max(shear, cone), tiny)); // exactly -1 where nothing slides
+    pls_vd work = pls_vd_set(0.0), power = (fn - spring_force) * vn;
     for (int a = 0; a < 3; ++a)
     {
-        f[a] = f[a] * factor;
-        pls_vd left = pls_vd_pick(slides, -(f[a] + dash[a]) * inv_ks, s[a]);
-        work = work + (left + s[a] - dt * v[a]) * (s[a] - left);
+        pls_vd f = trial[a] * factor, left = pls_vd_choose(slides, (f + dash[a]) * law->minus_inv_ks, s[a]);
+        work = work + (left + s[a] - law->dt * v[a]) * (s[a] - left);
         power = power + dash[a] * v[a];
-        out->shear_force[a] = f[a];
+        out->shear_force[a] = f;
         out->spring[a] = left;
     }
     out->normal_force = fn;
     out->damping_power = power;
-    out->slip_work = (0.5 * ks) * work;
+    out->slip_work = law->half_ks * work;
 }
 
 #endif

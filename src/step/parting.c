@@ -5,7 +5,8 @@
 // body that it lets go of.
 //
 // The last force acted for half a step after the last touching step, and its spring grew meanwhile by half of this step's tangential displacement: the energy of
-// the spring with that is what is left. Few contacts end per step. They are booked in order of body numbers, so that sums do not depend on the list.
+// the spring with that is what is left. Few contacts end per step. Each block of contacts is looked at while its bodies still have the velocities of mid-step; what
+// was found is booked at the end of the step, in order of body numbers, so that sums do not depend on the list.
 
 #include "step/world.h"
 
@@ -13,12 +14,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-
-struct pls_parted
-{
-    uint32_t number_i, number_j, row_i, row_j;
-    double energy; ///< [J]
-};
 
 static int by_numbers(const void *a, const void *b)
 {
@@ -80,37 +75,57 @@ static struct pls_parted parted_of(const pls_world *world, const pls_pair_sectio
     return (struct pls_parted){b->kind[i].number, b->kind[j].number, i, j, normal + shear};
 }
 
-static size_t count_ended(const pls_pair_list *list)
+static unsigned long long any_ended(const uint8_t *bytes, size_t count)
 {
-    size_t count = 0, bytes = list->count / 8, k = 0;
-    for (; k + 8 <= bytes; k += 8)
+    unsigned long long any = 0, eight;
+    for (size_t k = 0; k + 8 <= count; k += 8)
     {
-        uint64_t eight;
-        memcpy(&eight, list->ended + k, sizeof eight);
-        if (eight) count += (size_t)__builtin_popcountll(eight);
+        memcpy(&eight, bytes + k, sizeof eight);
+        any |= eight;
     }
-    for (; k < bytes; ++k) count += (size_t)__builtin_popcount(list->ended[k]);
-    return count;
+    for (size_t k = count / 8 * 8; k < count; ++k) any |= bytes[k];
+    return any;
+}
+
+pls_status pls_find_parted(const pls_world *world, const pls_pair_block *block, pls_parted_list *found)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_pair_section *section = &list->section[block->section];
+    size_t first = block->first / 8, last = (block->first + block->count + 7) / 8;
+    if (!any_ended(list->ended + first, last - first)) return PLS_OK;
+    PLS_TRY(pls_reserve(&found->entry, &found->capacity, found->count + block->count, sizeof *found->entry, "contacts that ended"));
+    for (size_t byte = first; byte < last; ++byte)
+        for (unsigned ended = list->ended[byte]; ended; ended &= ended - 1)
+            found->entry[found->count++] = parted_of(world, section, byte * 8 + (size_t)__builtin_ctz(ended));
+    return PLS_OK;
 }
 
 pls_status pls_book_parted(pls_world *world)
 {
-    const pls_pair_list *list = &world->list;
-    size_t count = count_ended(list), found = 0;
+    size_t count = 0;
+    for (int t = 0; t < world->work_count; ++t) count += world->parted[t].count;
     if (count == 0) return PLS_OK;
-    PLS_TRY(pls_reserve(&world->parted, &world->parted_capacity, count, sizeof *world->parted, "contacts that ended"));
-    for (size_t s = 0; s < list->section_count; ++s)
+    pls_parted_list *all = &world->parted[0];
+    PLS_TRY(pls_reserve(&all->entry, &all->capacity, count, sizeof *all->entry, "contacts that ended"));
+    for (int t = 1; t < world->work_count; ++t)
     {
-        const pls_pair_section *section = &list->section[s];
-        for (size_t byte = section->first / 8; byte < (section->first + section->count + 7) / 8; ++byte)
-            for (unsigned ended = list->ended[byte]; ended; ended &= ended - 1)
-                world->parted[found++] = parted_of(world, section, byte * 8 + (size_t)__builtin_ctz(ended));
+        if (world->parted[t].count > 0)
+            memcpy(all->entry + all->count, world->parted[t].entry, world->parted[t].count * sizeof *all->entry);
+        all->count += world->parted[t].count;
+        world->parted[t].count = 0;
     }
-    if (found > 1) qsort(world->parted, found, sizeof *world->parted, by_numbers);
-    for (size_t k = 0; k < found; ++k)
+    if (count > 1) qsort(all->entry, count, sizeof *all->entry, by_numbers);
+    for (size_t k = 0; k < count; ++k)
     {
-        world->bodies.slid[world->parted[k].row_i] += 0.5 * world->parted[k].energy;
-        world->bodies.slid[world->parted[k].row_j] += 0.5 * world->parted[k].energy;
+        world->bodies.slid[all->entry[k].row_i] += 0.5 * all->entry[k].energy;
+        world->bodies.slid[all->entry[k].row_j] += 0.5 * all->entry[k].energy;
     }
+    all->count = 0;
     return PLS_OK;
+}
+
+void pls_parted_free(pls_world *world)
+{
+    for (int t = 0; world->parted && t < world->work_count; ++t) pls_release(&world->parted[t].entry);
+    pls_release(&world->parted);
 }

@@ -19,26 +19,9 @@ enum {
     GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
     STABLE_STEPS = 4096, ///< steps between looks at the stable step
     SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
+    READY_GROUPS = 16,   ///< groups of rows that are finished at a time, if so many are ready
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
-
-static void find_contacts_and_forces(pls_world *world, double dt)
-{
-    pls_pair_list *list = &world->list;
-    const pls_contact_input input = {.place = world->bodies.place,
-                                     .spin = world->bodies.spin,
-                                     .load = world->bodies.load,
-                                     .before = world->bodies.before,
-                                     .orientation = world->bodies.orientation,
-                                     .domain = &world->domain,
-                                     .laws = &world->laws,
-                                     .large = world->bodies.count > PLS_LARGE_WORLD,
-                                     .growing = world->state_count > 0,
-                                     .dt = dt};
-#pragma omp parallel for schedule(static) if (list->block_count > SERIAL_BLOCKS)
-    for (size_t b = 0; b < list->block_count; ++b)
-        PLS_SIMD_SELECT(pls_contact_block)(list, &input, &list->block[b], &world->work[omp_get_thread_num()]);
-}
 
 static pls_status finish_block(pls_world *world, size_t first, size_t last, double dt, double time, pls_drift_report *next)
 {
@@ -82,35 +65,151 @@ static pls_status begin_bodies(pls_world *world)
     return judge_drift(world, &total);
 }
 
-/// Gather forces and finish velocities; `time` is the instant of the forces. With `go_on` each body begins its next step at once, while its rows
-/// are at hand.
-static pls_status finish_bodies(pls_world *world, double dt, double time, bool go_on)
+// ---- contacts, forces, velocities --------------------------------------------------------------------------------------------------------------------------
+
+/// What the threads of a sweep share.
+typedef struct sweep
+{
+    pls_world *world;
+    pls_contact_input input;
+    double time;            ///< of the forces [s]
+    bool go_on;             ///< each body begins its next step at once, while its rows are at hand
+    pls_drift_report total; ///< of the steps begun
+    pls_status worst;
+    char message[512];
+} sweep;
+
+/// The part of one thread: blocks of pairs, and the groups of rows that begin with them.
+typedef struct share
+{
+    size_t first_block, last_block, first_group, last_group;
+    size_t reached; ///< groups before this one were looked at while their forces were fresh
+    pls_drift_report report;
+    pls_status status;
+} share;
+
+static size_t group_of_block(const pls_pair_list *list, size_t block, size_t groups)
+{
+    if (block >= list->block_count) return groups;
+    size_t c = list->block[block].first;
+    return (list->row_i[c] < list->row_j[c] ? list->row_i[c] : list->row_j[c]) / PLS_ROW_GROUP;
+}
+
+static share share_of(const pls_world *world, int thread, int threads)
+{
+    const pls_pair_list *list = &world->list;
+    size_t groups = pls_block_count(world->bodies.count, PLS_ROW_GROUP), pairs = list->block_count - list->wall_blocks;
+    size_t first = list->wall_blocks + pairs * (size_t)thread / (size_t)threads;
+    size_t last = list->wall_blocks + pairs * ((size_t)thread + 1) / (size_t)threads;
+    return (share){.first_block = first,
+                   .last_block = last,
+                   .first_group = thread == 0 ? 0 : group_of_block(list, first, groups),
+                   .last_group = thread == threads - 1 ? groups : group_of_block(list, last, groups)};
+}
+
+static void work_block(sweep *s, share *mine, size_t b)
+{
+    pls_world *world = s->world;
+    const pls_pair_block *block = &world->list.block[b];
+    int thread = omp_get_thread_num();
+    PLS_SIMD_SELECT(pls_contact_block)(&world->list, &s->input, block, &world->work[thread]);
+    if (s->input.dt > 0.0 && mine->status == PLS_OK) mine->status = pls_find_parted(world, block, &world->parted[thread]);
+}
+
+static void finish_groups(sweep *s, share *mine, size_t first, size_t last)
+{
+    size_t end = last * PLS_ROW_GROUP < s->world->bodies.count ? last * PLS_ROW_GROUP : s->world->bodies.count;
+    for (size_t row = first * PLS_ROW_GROUP; row < end && mine->status == PLS_OK; row += BODY_BLOCK)
+    {
+        pls_drift_report part = {0.0, 0.0};
+        size_t stop = row + BODY_BLOCK < end ? row + BODY_BLOCK : end;
+        mine->status = finish_block(s->world, row, stop, s->input.dt, s->time, s->go_on ? &part : NULL);
+        add_report(&mine->report, &part);
+    }
+}
+
+/// Finish groups first .. last, which have no pairs in later blocks than are done, except those with pairs in blocks of other threads.
+static void finish_ready(sweep *s, share *mine, size_t first, size_t last)
+{
+    const uint32_t *begins = s->world->list.group_first;
+    for (size_t g = first; g < last;)
+    {
+        size_t end = g;
+        while (end < last && begins[end] >= mine->first_block) ++end;
+        finish_groups(s, mine, g, end);
+        for (g = end; g < last && begins[g] < mine->first_block; ++g) continue;
+    }
+}
+
+/// Finish what had to wait for other threads.
+static void finish_waiting(sweep *s, share *mine)
+{
+    const uint32_t *begins = s->world->list.group_first;
+    for (size_t g = mine->first_group; g < mine->reached;)
+    {
+        size_t end = g;
+        while (end < mine->reached && begins[end] < mine->first_block) ++end;
+        finish_groups(s, mine, g, end);
+        for (g = end; g < mine->reached && begins[g] >= mine->first_block; ++g) continue;
+    }
+    finish_groups(s, mine, mine->reached, mine->last_group);
+}
+
+static void sweep_share(sweep *s, share *mine)
+{
+    const pls_pair_list *list = &s->world->list;
+    mine->reached = mine->first_group;
+    for (size_t b = mine->first_block; b < mine->last_block; ++b)
+    {
+        work_block(s, mine, b);
+        size_t ready = mine->reached;
+        while (ready < mine->last_group && list->group_last[ready] <= b) ++ready;
+        if (ready - mine->reached < READY_GROUPS && b + 1 < mine->last_block) continue;
+        finish_ready(s, mine, mine->reached, ready);
+        mine->reached = ready;
+    }
+}
+
+/// Contacts, and forces and velocities of the end of the step: bodies are finished as soon as their last contact is known, while it is in the cache.
+/// Whatever the order, each contact is computed from bodies that are not yet finished, and each body from all of its contacts.
+static pls_status sweep_world(pls_world *world, double dt, double time, bool go_on)
 {
     pls_bodies *bodies = &world->bodies;
-    pls_drift_report total = {0.0, 0.0};
-    pls_status worst = PLS_OK;
-    char message[512] = "";
-#pragma omp parallel if (bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
+    const pls_pair_list *list = &world->list;
+    sweep s = {.world = world,
+               .input = {.place = bodies->place,
+                         .spin = bodies->spin,
+                         .load = bodies->load,
+                         .before = bodies->before,
+                         .orientation = bodies->orientation,
+                         .domain = &world->domain,
+                         .laws = &world->laws,
+                         .large = bodies->count > PLS_LARGE_WORLD,
+                         .growing = world->state_count > 0,
+                         .dt = dt},
+               .time = time,
+               .go_on = go_on};
+#pragma omp parallel if (list->block_count > SERIAL_BLOCKS || bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
-        pls_drift_report mine = {0.0, 0.0}, part = {0.0, 0.0};
+        share mine = share_of(world, omp_get_thread_num(), omp_get_num_threads());
 #pragma omp for schedule(static)
-        for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
+        for (size_t b = 0; b < list->wall_blocks; ++b) work_block(&s, &mine, b);
+        sweep_share(&s, &mine);
+#pragma omp barrier
+        finish_waiting(&s, &mine);
+#pragma omp critical(pls_sweep)
         {
-            size_t first = b * BODY_BLOCK, last = pls_block_end(b, BODY_BLOCK, bodies->count);
-            pls_status status = finish_block(world, first, last, dt, time, go_on ? &part : NULL);
-            add_report(&mine, &part);
-            if (status == PLS_OK) continue;
-#pragma omp critical(pls_finish_failure)
+            add_report(&s.total, &mine.report);
+            if (mine.status != PLS_OK)
             {
-                worst = status;
-                strncpy(message, pls_last_message(), sizeof message - 1); // messages belong to threads; bring it to ours
+                s.worst = mine.status;
+                strncpy(s.message, pls_last_message(), sizeof s.message - 1); // messages belong to threads; bring it to ours
             }
         }
-#pragma omp critical(pls_drift_report)
-        add_report(&total, &mine);
     }
-    if (worst != PLS_OK) return pls_fail(worst, "%s", message);
-    return go_on ? judge_drift(world, &total) : PLS_OK;
+    if (s.worst != PLS_OK) return pls_fail(s.worst, "%s", s.message);
+    PLS_TRY(pls_book_parted(world));
+    return go_on ? judge_drift(world, &s.total) : PLS_OK;
 }
 
 static pls_status check_step(pls_world *world)
@@ -129,9 +228,7 @@ static pls_status complete_step(pls_world *world, bool go_on)
     double time = (double)(world->step + 1) * world->dt;
     pls_domain_at(&world->domain, time);
     PLS_TRY(pls_neighbours_refresh(world));
-    find_contacts_and_forces(world, world->dt);
-    PLS_TRY(pls_book_parted(world));
-    PLS_TRY(finish_bodies(world, world->dt, time, go_on));
+    PLS_TRY(sweep_world(world, world->dt, time, go_on));
     if (!go_on) pls_special_finish(world);
     ++world->step;
     world->time = time;
@@ -195,9 +292,11 @@ static pls_status reserve_work(pls_world *world)
 {
     int threads = pls_threads();
     if (threads <= world->work_count) return PLS_OK;
+    pls_parted_free(world);
     pls_release(&world->work);
     world->work_count = 0;
     PLS_TRY(pls_allocate(&world->work, (size_t)threads, sizeof *world->work, "work space of threads"));
+    PLS_TRY(pls_allocate(&world->parted, (size_t)threads, sizeof *world->parted, "work space of threads"));
     world->work_count = threads;
     return PLS_OK;
 }
@@ -245,9 +344,8 @@ pls_status pls_world_prepare(pls_world *world)
     PLS_TRY(pls_neighbours_refresh(world));
     PLS_TRY(pls_choose_step(world));
     stand_still(&world->bodies);
-    find_contacts_and_forces(world, 0.0);
+    PLS_TRY(sweep_world(world, 0.0, world->time, false));
     PLS_TRY(pls_guard_overlap(world));
-    PLS_TRY(finish_bodies(world, 0.0, world->time, false));
     remember_loads(&world->bodies);
     world->prepared = true;
     return pls_guard_finite(world);

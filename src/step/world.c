@@ -116,8 +116,8 @@ void pls_world_destroy(pls_world *world)
     pls_release(&world->state_half);
     pls_release(&world->state_rate);
     pls_release(&world->binding);
+    pls_parted_free(world);
     pls_release(&world->work);
-    pls_release(&world->parted);
     pls_release(&world->special);
     pls_release(&world);
 }

@@ -67,6 +67,19 @@ typedef struct pls_skin_tuner
     int builds;       ///< in the window
 } pls_skin_tuner;
 
+/// A contact that ended in this step, and the energy it still held [J].
+struct pls_parted
+{
+    uint32_t number_i, number_j, row_i, row_j;
+    double energy;
+};
+
+typedef struct pls_parted_list
+{
+    struct pls_parted *entry;
+    size_t count, capacity;
+} pls_parted_list;
+
 struct pls_world
 {
     pls_world_def def;
@@ -91,9 +104,8 @@ struct pls_world
     pls_pair_list list;
     pls_contact_memory memory; ///< filled when the list is about to change
     bool memory_holds;         ///< `memory`, not the list, has the contacts (between a change of bodies and the next list)
-    struct pls_parted *parted; ///< contacts that ended in this step
-    size_t parted_capacity;
-    pls_contact_work *work; ///< one per thread
+    pls_contact_work *work;    ///< one per thread
+    pls_parted_list *parted;   ///< contacts that ended in this step, one list per thread
     int work_count;
     pls_skin_tuner tuner;
     pls_special *special;
@@ -130,8 +142,11 @@ pls_status pls_neighbours_refresh(pls_world *world);
 pls_status pls_neighbours_detach(pls_world *world);
 
 // parting.c
-/// Book what the springs of contacts that ended in this step still held.
+/// Note what the springs of contacts of a block that ended in this step still hold, before their bodies are finished.
+pls_status pls_find_parted(const pls_world *world, const pls_pair_block *block, pls_parted_list *found);
+/// Book what was found.
 pls_status pls_book_parted(pls_world *world);
+void pls_parted_free(pls_world *world);
 
 // step.c
 /// Size and centre of the arrangement of now.
