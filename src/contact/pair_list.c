@@ -355,7 +355,7 @@ static uint32_t partner_number(const pls_pair_list *list, const pls_bodies *bodi
 static pls_status gather_rows(pls_gather_rows *rows, const pls_pair_list *list, const pls_bodies *bodies, bool walls)
 {
     size_t entries = 0;
-    PLS_TRY(pls_reserve(&rows->start, &rows->start_capacity, bodies->count + 2 + PLS_ROW_REACH, sizeof *rows->start, "gather rows"));
+    PLS_TRY(pls_reserve(&rows->start, &rows->start_capacity, bodies->count + 2, sizeof *rows->start, "gather rows"));
     memset(rows->start, 0, (bodies->count + 2) * sizeof *rows->start);
     for (size_t s = 0; s < list->section_count; ++s)
     {
@@ -380,7 +380,6 @@ static pls_status gather_rows(pls_gather_rows *rows, const pls_pair_list *list, 
             rows->entry[rows->start[list->row_j[c] + 1]++] = (uint32_t)(2 * c + 1);
         }
     }
-    for (size_t row = bodies->count + 1; row < bodies->count + 2 + PLS_ROW_REACH; ++row) rows->start[row] = rows->start[bodies->count];
     pls_status worst = PLS_OK;
 #pragma omp parallel for schedule(dynamic, 256)
     for (size_t row = 0; row < bodies->count; ++row)
@@ -440,9 +439,8 @@ static pls_status keep_reference(pls_pair_list *list, const pls_bodies *bodies)
 /// Nothing is known of which entries touch: every row is stale.
 static pls_status forget_touching_entries(pls_pair_list *list, size_t rows)
 {
-    size_t room = list->pairs.start[rows] + (rows + PLS_ROW_REACH) * PLS_NEAR_SPARE;
+    size_t room = list->pairs.start[rows] + rows * PLS_NEAR_SPARE;
     PLS_TRY(renew(&list->near, &list->near_capacity, room, sizeof *list->near, "touching entries"));
-    memset(list->near, 0, room * sizeof *list->near); // loops that fetch ahead look at rows before they are listed
     for (size_t row = 0; row < rows; ++row) pls_near_row(list, row)[0] = PLS_NEAR_STALE;
     return PLS_OK;
 }

@@ -16,8 +16,7 @@
 enum {
     PLS_CONTACT_BLOCK = PLS_LAW_BATCH, ///< candidates per block of work: its arrays stay in the first-level cache
     PLS_PAIR_REACH = 64,               ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
-    PLS_ROW_REACH = 16,                ///< gather rows behind the last body, and entries behind the last one, for loops that fetch ahead
-    PLS_LARGE_WORLD = 20000,           ///< bodies from which rows and contacts overflow the near caches, so that fetching ahead pays
+    PLS_LARGE_WORLD = 4000,            ///< bodies from which rows overflow the near caches, so that fetching ahead pays
     PLS_ROW_GROUP = 8,                 ///< rows that are finished together
     PLS_SLOT = 8,       ///< doubles in the slot of a sphere pair: F on i (3), power of its dashpots, torque (3), work of its slider
     PLS_WALL_SLOT = 16, ///< doubles in the slot of a wall pair: the same for i, then for the wall

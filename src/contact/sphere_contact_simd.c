@@ -38,24 +38,28 @@ enum {
 
 static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}); }
 
+/// Signs to flip.
+static const pls_v4i none = {0, 0, 0, 0}, fourth = {0, 0, 0, INT64_MIN};
+
 /// X_j - X_i, r_i + r_j | u_j - u_i, lead_z of j less i, from two rows.
-static inline pls_v8 pair_row(const pls_body_place *i, const pls_body_place *j)
+static inline pls_row pair_row(const pls_body_place *i, const pls_body_place *j)
 {
-    return pls_v8_load(&j->x) - (pls_v8)((pls_v8i)pls_v8_load(&i->x) ^ (pls_v8i){0, 0, 0, INT64_MIN, 0, 0, 0, 0});
+    return pls_row_subtract(pls_row_load(&j->x), pls_row_flip(pls_row_load(&i->x), fourth, none));
 }
 
 /// w_i + w_j in the middle, lead_x of j less i | the same sum at the end, lead_y of j less i.
-static inline pls_v8 sum_row(const pls_body_spin *i, const pls_body_spin *j)
+static inline pls_row sum_row(const pls_body_spin *i, const pls_body_spin *j)
 {
-    return pls_v8_load(&j->wx) + (pls_v8)((pls_v8i)pls_v8_load(&i->wx) ^ (pls_v8i){0, 0, 0, INT64_MIN, 0, 0, 0, INT64_MIN});
+    return pls_row_add(pls_row_load(&j->wx), pls_row_flip(pls_row_load(&i->wx), fourth, fourth));
 }
 
 /// (r_i - r_j)/2 (w_i - w_j), in the middle and at the end.
-static inline pls_v8 skew_row(const pls_contact_input *in, uint32_t i, uint32_t j)
+static inline pls_row skew_row(const pls_contact_input *in, uint32_t i, uint32_t j)
 {
     double end = 0.5 * (in->place[i].radius - in->place[j].radius), middle = end;
     if (in->growing) middle = end - 0.5 * ((double)in->before[i].growth - (double)in->before[j].growth);
-    return pls_v8_join(pls_v4_set(middle), pls_v4_set(end)) * (pls_v8_load(&in->spin[i].wx) - pls_v8_load(&in->spin[j].wx));
+    return pls_row_scale(pls_row_subtract(pls_row_load(&in->spin[i].wx), pls_row_load(&in->spin[j].wx)), pls_v4_set(middle),
+                         pls_v4_set(end));
 }
 
 static inline pls_v4 image_shift(const pls_pair_list *list, size_t c, pls_v4 edge)
@@ -158,10 +162,29 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
 
 // ---- load -------------------------------------------------------------------------------------------------------------------------------------------------
 
+/// Fetch into the cache the springs and slots that later loops will need of candidates c .., and the bodies of candidates further ahead.
+static inline __attribute__((always_inline)) void fetch_whole(const pls_pair_list *list, const pls_contact_input *in,
+                                                              const pls_pair_section *section, size_t c)
+{
+    const double *history = pls_pair_history(list, section, c), *slot = list->slot + c * PLS_SLOT;
+    for (int a = 0; a < 3; ++a) __builtin_prefetch(history + 8 * a, 1);
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane) __builtin_prefetch(slot + lane * PLS_SLOT, 1);
+    const uint32_t *ahead = list->row_j + c + FETCH_AHEAD;
+    if (in->large)
+#pragma GCC unroll 8
+        for (int lane = 0; lane < PLS_W; ++lane)
+        {
+            __builtin_prefetch(&in->place[ahead[lane]]);
+            __builtin_prefetch(&in->spin[ahead[lane]]);
+        }
+}
+
 /// Rows of both bodies to columns over contacts: of the candidates of the block (`whole`), or of the picked ones.
 /// `plain`: no periodic box, equal radii that stay.
 static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in,
-                                                             const pls_pair_block *block, pls_contact_work *work, int whole, int plain)
+                                                             const pls_pair_section *section, const pls_pair_block *block,
+                                                             pls_contact_work *work, int whole, int plain)
 {
     const int periodic = !plain && in->domain->any_periodic, growing = !plain && in->growing, skewed = !plain && !list->equal_radii;
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
@@ -169,24 +192,16 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
     const size_t count = whole ? block->count : work->active_count;
     for (size_t k = 0; k < count; k += PLS_W)
     {
-        pls_v8 place[PLS_W], sum[PLS_W], skew[PLS_W];
+        pls_row place[PLS_W], sum[PLS_W], skew[PLS_W];
         pls_vd growth = pls_vd_set(0.0);
-        if (whole && in->large)
-        {
-            const uint32_t *ahead = list->row_j + block->first + k + FETCH_AHEAD;
-            for (int lane = 0; lane < PLS_W; ++lane)
-            {
-                __builtin_prefetch(&in->place[ahead[lane]]);
-                __builtin_prefetch(&in->spin[ahead[lane]]);
-            }
-        }
+        if (whole) fetch_whole(list, in, section, block->first + k);
 #pragma GCC unroll 8
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = whole ? block->first + k + (size_t)lane : work->active[k + (size_t)lane];
             uint32_t i = list->row_i[c], j = list->row_j[c];
             place[lane] = pair_row(&in->place[i], &in->place[j]);
-            if (periodic) place[lane] += pls_v8_join(image_shift(list, c, edge), image_shift(list, c, edge_rate));
+            if (periodic) place[lane] = pls_row_add(place[lane], pls_row_join(image_shift(list, c, edge), image_shift(list, c, edge_rate)));
             sum[lane] = sum_row(&in->spin[i], &in->spin[j]);
             if (skewed) skew[lane] = skew_row(in, i, j);
             if (growing) growth[lane] = (double)in->before[i].growth + (double)in->before[j].growth;
@@ -534,14 +549,14 @@ static void frame_walls(const pls_pair_list *list, const pls_contact_input *in, 
     const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0;
     for (size_t k = 0; k < work->active_count; k += PLS_W)
     {
-        pls_v8 place[PLS_W], turn[PLS_W];
+        pls_row place[PLS_W], turn[PLS_W];
         pls_vd growth, inv_mass;
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t c = work->active[k + (size_t)lane];
             uint32_t i = list->row_i[c];
-            place[lane] = pls_v8_load(&in->place[i].x);
-            turn[lane] = pls_v8_load(&in->spin[i].wx);
+            place[lane] = pls_row_load(&in->place[i].x);
+            turn[lane] = pls_row_load(&in->spin[i].wx);
             growth[lane] = in->before[i].growth;
             inv_mass[lane] = in->load[i].inv_mass;
         }
@@ -671,7 +686,7 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
         frame_walls(list, in, section, work, &wall);
     else
     {
-        load_pairs(list, in, block, work, 0, 0);
+        load_pairs(list, in, section, block, work, 0, 0);
         measure_pairs(list, section, block, work, 0);
         slip_of_pairs(list, surface, work->active_count, work, 0);
         carry_springs(list, in, surface, NULL, 0, work->active_count, work, 0, 0);
@@ -692,7 +707,7 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
 {
     double *history = pls_pair_history(list, section, block->first);
     const double surface = surface_of(&in->laws->law[section->law]);
-    load_pairs(list, in, block, work, 1, plain);
+    load_pairs(list, in, section, block, work, 1, plain);
     measure_pairs(list, section, block, work, 1);
     slip_of_pairs(list, surface, block->count, work, plain);
     carry_springs(list, in, surface, history, (size_t)section->numbers, block->count, work, 1, plain);

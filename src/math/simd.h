@@ -47,19 +47,11 @@ typedef double pls_vd __attribute__((vector_size(8 * PLS_W)));  ///< PLS_W doubl
 typedef int64_t pls_vi __attribute__((vector_size(8 * PLS_W))); ///< masks and bit patterns of pls_vd
 typedef double pls_v4 __attribute__((vector_size(32)));         ///< half a body row: three components and one more
 typedef int64_t pls_v4i __attribute__((vector_size(32)));
-typedef double pls_v8 __attribute__((vector_size(64))); ///< a row of a cache line
-typedef int64_t pls_v8i __attribute__((vector_size(64)));
-typedef float pls_f8 __attribute__((vector_size(32))); ///< a row in single precision
-typedef int32_t pls_i8 __attribute__((vector_size(32)));
 
 static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
 static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }
 static inline pls_v4 pls_v4_load(const double *p) { return *(const pls_v4 *)p; }
 static inline void pls_v4_store(double *p, pls_v4 a) { *(pls_v4 *)p = a; }
-static inline pls_v8 pls_v8_load(const double *p) { return *(const pls_v8 *)p; }
-static inline pls_v8 pls_v8_join(pls_v4 low, pls_v4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
-static inline pls_v4 pls_v8_low(pls_v8 a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
-static inline pls_v4 pls_v8_high(pls_v8 a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
 static inline pls_vd pls_vd_set(double a) { return (pls_vd){0} + a; }
 static inline pls_v4 pls_v4_set(double a) { return (pls_v4){a, a, a, a}; }
 /// mask ? a : b, mask all ones or all zeros per lane.
@@ -123,6 +115,66 @@ static inline pls_vd pls_vd_choose(unsigned bits, pls_vd a, pls_vd b)
     return pls_vd_pick((pls_vi)((((pls_vi){0} + (int64_t)bits) & lane) == lane), a, b);
 #endif
 }
+
+// ---- rows of eight doubles, a cache line: one register, or two halves (compilers keep vectors wider than registers in memory) -------------------------
+
+#if PLS_W == 8
+typedef double pls_row __attribute__((vector_size(64)));
+typedef int64_t pls_rowi_ __attribute__((vector_size(64)));
+typedef float pls_rowf_ __attribute__((vector_size(32)));
+static inline pls_row pls_row_join(pls_v4 low, pls_v4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
+static inline pls_row pls_row_load(const double *p) { return *(const pls_row *)p; }
+static inline void pls_row_store(double *p, pls_row a) { *(pls_row *)p = a; }
+static inline pls_row pls_row_add(pls_row a, pls_row b) { return a + b; }
+static inline pls_row pls_row_subtract(pls_row a, pls_row b) { return a - b; }
+static inline pls_row pls_row_scale(pls_row a, pls_v4 low, pls_v4 high) { return a * pls_row_join(low, high); }
+/// Bits of a that are set in the mask are flipped.
+static inline pls_row pls_row_flip(pls_row a, pls_v4i low, pls_v4i high)
+{
+    return (pls_row)((pls_rowi_)a ^ __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7));
+}
+/// mask ? a : b
+static inline pls_row pls_row_pick(pls_v4i low, pls_v4i high, pls_row a, pls_row b)
+{
+    pls_rowi_ mask = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    return (pls_row)(((pls_rowi_)a & mask) | ((pls_rowi_)b & ~mask));
+}
+static inline pls_row pls_row_of_floats(const float *p) { return __builtin_convertvector(*(const pls_rowf_ *)p, pls_row); }
+static inline void pls_row_to_floats(float *p, pls_row a) { *(pls_rowf_ *)p = __builtin_convertvector(a, pls_rowf_); }
+#else
+typedef struct pls_row
+{
+    pls_v4 low, high;
+} pls_row;
+typedef float pls_rowf_ __attribute__((vector_size(16)));
+static inline pls_row pls_row_join(pls_v4 low, pls_v4 high) { return (pls_row){low, high}; }
+static inline pls_row pls_row_load(const double *p) { return (pls_row){pls_v4_load(p), pls_v4_load(p + 4)}; }
+static inline void pls_row_store(double *p, pls_row a)
+{
+    pls_v4_store(p, a.low);
+    pls_v4_store(p + 4, a.high);
+}
+static inline pls_row pls_row_add(pls_row a, pls_row b) { return (pls_row){a.low + b.low, a.high + b.high}; }
+static inline pls_row pls_row_subtract(pls_row a, pls_row b) { return (pls_row){a.low - b.low, a.high - b.high}; }
+static inline pls_row pls_row_scale(pls_row a, pls_v4 low, pls_v4 high) { return (pls_row){a.low * low, a.high * high}; }
+static inline pls_row pls_row_flip(pls_row a, pls_v4i low, pls_v4i high)
+{
+    return (pls_row){(pls_v4)((pls_v4i)a.low ^ low), (pls_v4)((pls_v4i)a.high ^ high)};
+}
+static inline pls_row pls_row_pick(pls_v4i low, pls_v4i high, pls_row a, pls_row b)
+{
+    return (pls_row){pls_v4_pick(low, a.low, b.low), pls_v4_pick(high, a.high, b.high)};
+}
+static inline pls_row pls_row_of_floats(const float *p)
+{
+    return (pls_row){__builtin_convertvector(*(const pls_rowf_ *)p, pls_v4), __builtin_convertvector(*(const pls_rowf_ *)(p + 4), pls_v4)};
+}
+static inline void pls_row_to_floats(float *p, pls_row a)
+{
+    *(pls_rowf_ *)p = __builtin_convertvector(a.low, pls_rowf_);
+    *(pls_rowf_ *)(p + 4) = __builtin_convertvector(a.high, pls_rowf_);
+}
+#endif
 
 // Transposes. Rows are eight (or four) doubles in memory, one per contact; columns are vectors over PLS_W contacts.
 
@@ -219,14 +271,14 @@ static inline __attribute__((always_inline)) void pls_rows4(const pls_vd column[
 }
 
 /// PLS_W rows of eight to eight columns.
-static inline __attribute__((always_inline)) void pls_columns8(const pls_v8 *row, pls_vd column[8])
+static inline __attribute__((always_inline)) void pls_columns8(const pls_row *row, pls_vd column[8])
 {
 #if PLS_W == 8
     for (int k = 0; k < 8; ++k) column[k] = row[k];
     pls_transpose8_(column);
 #else
     pls_v4 low[PLS_W], high[PLS_W];
-    for (int k = 0; k < PLS_W; ++k) low[k] = pls_v8_low(row[k]), high[k] = pls_v8_high(row[k]);
+    for (int k = 0; k < PLS_W; ++k) low[k] = row[k].low, high[k] = row[k].high;
     pls_columns4(low, column);
     pls_columns4(high, column + 4);
 #endif

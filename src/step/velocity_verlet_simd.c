@@ -12,6 +12,8 @@
 
 #include "step/velocity_verlet.h"
 
+static const pls_v4i three = {-1, -1, -1, 0}; ///< mask of the first three
+
 // ---- a vector of bodies ---------------------------------------------------------------------------------------------------------------------------------
 
 /// Rows first .. first + count, count <= PLS_W; what is beyond repeats the first and is not stored.
@@ -29,12 +31,12 @@ static inline size_t row_of(const group *g, int lane) { return g->first + (size_
 
 static inline __attribute__((always_inline)) void load_motion(group *g)
 {
-    pls_v8 place[PLS_W];
+    pls_row place[PLS_W];
     pls_v4 spin[PLS_W];
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane)
     {
-        place[lane] = pls_v8_load(&g->bodies->place[row_of(g, lane)].x);
+        place[lane] = pls_row_load(&g->bodies->place[row_of(g, lane)].x);
         spin[lane] = pls_v4_load(&g->bodies->spin[row_of(g, lane)].wx);
     }
     pls_columns8(place, g->place);
@@ -125,16 +127,15 @@ static inline __attribute__((always_inline)) void turn(const group *g, const pls
 static inline __attribute__((always_inline)) void begin(group *g, double dt, drift_sums *sums)
 {
     const double half = 0.5 * dt, quarter = 0.25 * dt;
-    const pls_i8 no_spare = {-1, -1, -1, 0, -1, -1, -1, 0};
-    pls_v8 last[PLS_W];
+    pls_row last[PLS_W];
 #pragma GCC unroll 8
-    for (int lane = 0; lane < PLS_W; ++lane)
-        last[lane] = __builtin_convertvector(*(const pls_f8 *)&g->bodies->before[row_of(g, lane)], pls_v8);
+    for (int lane = 0; lane < PLS_W; ++lane) last[lane] = pls_row_of_floats(&g->bodies->before[row_of(g, lane)].fx);
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane)
         if (lane < g->count)
-            *(pls_f8 *)&g->bodies->before[row_of(g, lane)] =
-                (pls_f8)(no_spare & (pls_i8) __builtin_convertvector(pls_v8_load(&g->bodies->load[row_of(g, lane)].fx), pls_f8));
+            pls_row_to_floats(&g->bodies->before[row_of(g, lane)].fx,
+                              pls_row_pick(three, three, pls_row_load(&g->bodies->load[row_of(g, lane)].fx),
+                                           pls_row_join(pls_v4_set(0.0), pls_v4_set(0.0))));
     pls_vd old[8], lead[3], u[3], uw[3];
     pls_columns8(last, old);
     for (int a = 0; a < 3; ++a)
@@ -164,8 +165,8 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
     {
         group g = {.bodies = bodies, .first = row, .count = last - row < PLS_W ? (int)(last - row) : PLS_W};
         load_motion(&g);
-        pls_v8 load[PLS_W];
-        for (int lane = 0; lane < PLS_W; ++lane) load[lane] = pls_v8_load(&bodies->load[row_of(&g, lane)].fx);
+        pls_row load[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane) load[lane] = pls_row_load(&bodies->load[row_of(&g, lane)].fx);
         pls_columns8(load, g.load);
         begin(&g, dt, &sums);
         store_motion(&g, 1);
@@ -189,69 +190,59 @@ static __attribute__((noinline)) void list_touching(pls_pair_list *list, size_t 
     }
 }
 
-enum {
-    ROWS_AHEAD = 8,   ///< rows whose forces are fetched into the cache before they are summed; within PLS_ROW_REACH
-    ENTRIES_AHEAD = 8 ///< entries fetched of such a row; what lies behind its touching ones does no harm
-};
-
-static inline void fetch_slots(const pls_pair_list *list, size_t row)
+static inline pls_row slot_of(const pls_pair_list *list, uint32_t candidate)
 {
-    const uint32_t *entry = pls_near_row(list, row) + PLS_NEAR_HEAD;
-    for (int k = 0; k < ENTRIES_AHEAD; ++k) __builtin_prefetch(list->slot + (size_t)entry[k] * PLS_SLOT);
-}
-
-static inline pls_v8 slot_of(const pls_pair_list *list, uint32_t candidate)
-{
-    return pls_v8_load(list->slot + (size_t)candidate * PLS_SLOT);
+    return pls_row_load(list->slot + (size_t)candidate * PLS_SLOT);
 }
 
 /// The same with the torque about the centre of i (side 1) or j (side -1).
-static inline pls_v8 skewed_slot_of(const pls_pair_list *list, uint32_t candidate, double side)
+static inline pls_row skewed_slot_of(const pls_pair_list *list, uint32_t candidate, double side)
 {
     double lever = 1.0 + side * list->skew[candidate];
-    return (pls_v8){1.0, 1.0, 1.0, 1.0, lever, lever, lever, 1.0} * slot_of(list, candidate);
+    return pls_row_scale(slot_of(list, candidate), pls_v4_set(1.0), (pls_v4){lever, lever, lever, 1.0});
 }
 
 /// Force, power of dashpots, torque, work of sliders: what the contacts of a body come to, in order of the partners' numbers.
-static inline __attribute__((always_inline)) pls_v8 gather_pairs(pls_pair_list *list, size_t row, int skewed)
+static inline __attribute__((always_inline)) pls_row gather_pairs(pls_pair_list *list, size_t row, int skewed)
 {
     const uint32_t *head = pls_near_row(list, row), *entry = head + PLS_NEAR_HEAD;
     if (head[0] == PLS_NEAR_STALE) list_touching(list, row);
-    pls_v8 sum = {0.0};
+    pls_row sum = pls_row_join(pls_v4_set(0.0), pls_v4_set(0.0));
     const uint32_t *end = entry + head[0];
     for (; entry < end; entry += PLS_NEAR_QUAD)
 #pragma GCC unroll 4
-        for (int k = 0; k < PLS_NEAR_QUAD; ++k) sum += skewed ? skewed_slot_of(list, entry[k], -1.0) : slot_of(list, entry[k]);
-    sum = (pls_v8)((pls_v8i)sum ^ (pls_v8i){INT64_MIN, INT64_MIN, INT64_MIN, 0, 0, 0, 0, 0});
+        for (int k = 0; k < PLS_NEAR_QUAD; ++k)
+            sum = pls_row_add(sum, skewed ? skewed_slot_of(list, entry[k], -1.0) : slot_of(list, entry[k]));
+    sum = pls_row_flip(sum, (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}, (pls_v4i){0, 0, 0, 0});
     for (end += head[1]; entry < end; entry += PLS_NEAR_QUAD)
 #pragma GCC unroll 4
-        for (int k = 0; k < PLS_NEAR_QUAD; ++k) sum += skewed ? skewed_slot_of(list, entry[k], 1.0) : slot_of(list, entry[k]);
+        for (int k = 0; k < PLS_NEAR_QUAD; ++k)
+            sum = pls_row_add(sum, skewed ? skewed_slot_of(list, entry[k], 1.0) : slot_of(list, entry[k]));
     return sum;
 }
 
-static inline void gather_walls(const pls_pair_list *list, size_t row, pls_v8 *sum)
+static inline void gather_walls(const pls_pair_list *list, size_t row, pls_row *sum)
 {
     for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
     {
         uint32_t entry = list->walls.entry[k];
-        if (pls_pair_touches(list, entry >> 1)) *sum += pls_v8_load(pls_wall_slot(list, entry >> 1) + (entry & 1) * 8);
+        if (pls_pair_touches(list, entry >> 1)) *sum = pls_row_add(*sum, pls_row_load(pls_wall_slot(list, entry >> 1) + (entry & 1) * 8));
     }
 }
 
 /// Velocities of the end from the sums of the contacts' slots and body forces; what contacts took is booked, half to either body.
-static inline __attribute__((always_inline)) void finish(group *g, const pls_v8 sum[PLS_W], double dt)
+static inline __attribute__((always_inline)) void finish(group *g, const pls_row sum[PLS_W], double dt)
 {
     const double half = 0.5 * dt;
-    const pls_v8i all = {-1, -1, -1, 0, -1, -1, -1, 0};
     pls_bodies *b = g->bodies;
-    pls_v8 load[PLS_W];
+    pls_row load[PLS_W];
     pls_vd total[8];
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane)
     {
-        pls_v8 *row = (pls_v8 *)&b->load[row_of(g, lane)].fx;
-        load[lane] = (pls_v8)(((pls_v8i)sum[lane] & all) | ((pls_v8i)*row & ~all));
-        if (lane < g->count) *row = load[lane];
+        double *row = &b->load[row_of(g, lane)].fx;
+        load[lane] = pls_row_pick(three, three, sum[lane], pls_row_load(row));
+        if (lane < g->count) pls_row_store(row, load[lane]);
     }
     pls_columns8(load, g->load);
     pls_columns8(sum, total);
@@ -270,18 +261,18 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
                                                               const double *force, const double *torque, int skewed, pls_drift_report *next)
 {
     drift_sums sums = {0};
-    const bool large = bodies->count > PLS_LARGE_WORLD;
     for (size_t row = first; row < last; row += PLS_W)
     {
         group g = {.bodies = bodies, .first = row, .count = last - row < PLS_W ? (int)(last - row) : PLS_W};
-        pls_v8 sum[PLS_W] = {0};
-        for (int lane = 0; lane < g.count; ++lane)
+        pls_row sum[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane)
         {
-            size_t k = row + (size_t)lane;
-            if (large) fetch_slots(list, k + ROWS_AHEAD);
+            size_t k = row_of(&g, lane);
             sum[lane] = gather_pairs(list, k, skewed);
             gather_walls(list, k, &sum[lane]);
-            if (force) sum[lane] += pls_v8_join(pls_v4_load(force + 4 * (k - first)), pls_v4_load(torque + 4 * (k - first)));
+            if (force)
+                sum[lane] =
+                    pls_row_add(sum[lane], pls_row_join(pls_v4_load(force + 4 * (k - first)), pls_v4_load(torque + 4 * (k - first))));
         }
         load_motion(&g);
         finish(&g, sum, dt);
