@@ -11,6 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+enum {
+    LARGE_PAGE = 2 << 20, ///< bytes
+    LARGE_BLOCK = 4 << 20 ///< bytes from which large pages waste little
+};
+
 typedef struct header
 {
     uint64_t mark;
@@ -23,9 +32,20 @@ _Static_assert(sizeof(header) <= PLS_ALIGNMENT, "the header fits in front of an 
 static const uint64_t block_mark = UINT64_C(0x706c73626c6f636b);  // "plsblock"
 static const uint64_t released_mark = UINT64_C(0x706c7366726565); // "plsfree"
 
+/// Large blocks on large pages where the system has them: rows of neighbours are reached at random, and a million bodies on small pages overflow the
+/// processor's table of pages.
 static void *c_allocate(void *context, size_t size, size_t alignment)
 {
     (void)context;
+#ifdef MADV_HUGEPAGE
+    if (size >= LARGE_BLOCK)
+    {
+        size_t whole = (size + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
+        void *block = aligned_alloc(LARGE_PAGE, whole);
+        if (block) (void)madvise(block, whole, MADV_HUGEPAGE); // a wish; a system that does not grant it keeps small pages
+        return block;
+    }
+#endif
     return aligned_alloc(alignment, size);
 }
 

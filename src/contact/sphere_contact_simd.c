@@ -33,7 +33,7 @@
 
 enum {
     FETCH_AHEAD = 48, ///< candidates; within PLS_PAIR_REACH
-    WHOLE_FROM = 7,   ///< sixteenths of a block that must have touched at the last step for whole vectors to be quicker
+    WHOLE_FROM = 6,   ///< sixteenths of a block that must have touched at the last step for whole vectors to be quicker
 };
 
 static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}); }

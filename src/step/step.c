@@ -19,7 +19,7 @@ enum {
     GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
     STABLE_STEPS = 4096, ///< steps between looks at the stable step
     SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
-    READY_GROUPS = 16,   ///< groups of rows that are finished at a time, if so many are ready
+    READY_GROUPS = 32,   ///< groups of rows that are finished at a time, if so many are ready
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
