@@ -170,13 +170,14 @@ static inline __attribute__((always_inline)) void fetch_whole(const pls_pair_lis
     for (int a = 0; a < 3; ++a) __builtin_prefetch(history + 8 * a, 1);
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane) __builtin_prefetch(slot + lane * PLS_SLOT, 1);
-    const uint32_t *ahead = list->row_j + c + FETCH_AHEAD;
+    const uint32_t *i = list->row_i + c + FETCH_AHEAD, *j = list->row_j + c + FETCH_AHEAD;
     if (in->large)
 #pragma GCC unroll 8
-        for (int lane = 0; lane < PLS_W; ++lane)
+        for (int lane = 0; lane < PLS_W; ++lane) // the lower row comes many times in turn
         {
-            __builtin_prefetch(&in->place[ahead[lane]]);
-            __builtin_prefetch(&in->spin[ahead[lane]]);
+            uint32_t upper = i[lane] > j[lane] ? i[lane] : j[lane];
+            __builtin_prefetch(&in->place[upper]);
+            __builtin_prefetch(&in->spin[upper]);
         }
 }
 
