@@ -16,8 +16,8 @@
 #endif
 
 enum {
-    LARGE_PAGE = 2 << 20, ///< bytes
-    LARGE_BLOCK = 4 << 20 ///< bytes from which large pages waste little
+    LARGE_PAGE = 2 << 20,  ///< bytes
+    LARGE_BLOCK = 32 << 20 ///< bytes from which whole large pages waste less than a sixteenth
 };
 
 typedef struct header

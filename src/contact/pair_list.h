@@ -1,8 +1,9 @@
 // pair_list.h -- the Verlet list: pairs that touch or may soon touch, with what each contact remembers and where its force goes.
 //
 // Candidates are numbered 0 .. count, in sections of one kind of pair and one law; sphere pairs first, wall pairs behind. Within a section they are in order
-// of the lower of the two memory rows, so that the loop streams and a body's candidates are done with when the loop has passed its row. A section begins at a multiple of 8, and so do the
-// blocks of work cut from it; the candidates that fill it up are pairs (0, 0) that are never active.
+// of the lower of the two memory rows, so that the loop streams and a body's candidates are done with when the loop has passed its row. A section begins at a
+// multiple of 8, and so do the blocks of work cut from it; the candidates that fill it up repeat its last pair, so that a block reads no other bodies (another
+// thread may be writing theirs), and are never active.
 //
 // Which pairs are listed, and where, depends on the skin and on the order of bodies in memory; what comes of it does not: a candidate that does not touch
 // leaves no trace, and each body gathers its touching contacts in order of the partner's number.

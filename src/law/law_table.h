@@ -17,7 +17,8 @@ typedef struct pls_law
     uint16_t material[2];
     double values[PLS_MAX_PARAMETERS];
     double constants[PLS_LAW_MAX_CONSTANTS];
-    bool lever_at_surface; ///< see pls_world_set_lever_at_surface
+    double checked[PLS_LAW_MAX_CONSTANTS]; ///< the constants when the stable step was last checked
+    bool lever_at_surface;                 ///< see pls_world_set_lever_at_surface
 } pls_law;
 
 enum { PLS_NO_LAW = UINT16_MAX };

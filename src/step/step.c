@@ -23,13 +23,14 @@ enum {
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
-static pls_status finish_block(pls_world *world, size_t first, size_t last, double dt, double time, pls_drift_report *next)
+static pls_status finish_block(pls_world *world, size_t first, size_t last, double dt, double time, bool go_on, pls_drift_report *report)
 {
     double force[4 * BODY_BLOCK] __attribute__((aligned(64))), torque[4 * BODY_BLOCK] __attribute__((aligned(64)));
     double scratch[PLS_FORCE_SCRATCH] __attribute__((aligned(64)));
     bool forced = world->force_count > 0;
     if (forced) PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
-    PLS_SIMD_SELECT(pls_verlet_finish)(&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL, next);
+    PLS_SIMD_SELECT(pls_verlet_finish)
+    (&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL, go_on, report);
     return PLS_OK;
 }
 
@@ -39,10 +40,11 @@ static void add_report(pls_drift_report *total, const pls_drift_report *part)
     total->poison += part->poison; // zeros, or NaN: no order to keep
 }
 
-static pls_status judge_drift(pls_world *world, const pls_drift_report *total)
+/// Stop where something is not finite; `moved`: the report is that of a drift.
+static pls_status judge(pls_world *world, const pls_drift_report *total, bool moved)
 {
     if (total->poison != 0.0 || isnan(total->poison)) PLS_TRY(pls_guard_finite(world));
-    pls_neighbours_moved(world, total->largest_square);
+    if (moved) pls_neighbours_moved(world, total->largest_square);
     return PLS_OK;
 }
 
@@ -62,7 +64,7 @@ static pls_status begin_bodies(pls_world *world)
 #pragma omp critical(pls_drift_report)
         add_report(&total, &mine);
     }
-    return judge_drift(world, &total);
+    return judge(world, &total, true);
 }
 
 // ---- contacts, forces, velocities --------------------------------------------------------------------------------------------------------------------------
@@ -72,10 +74,11 @@ typedef struct sweep
 {
     pls_world *world;
     pls_contact_input input;
-    double time;            ///< of the forces [s]
-    bool go_on;             ///< each body begins its next step at once, while its rows are at hand
-    pls_drift_report total; ///< of the steps begun
+    double time; ///< of the forces [s]
+    bool go_on;  ///< each body begins its next step at once, while its rows are at hand
+    pls_drift_report total;
     pls_status worst;
+    size_t failed_at; ///< first block of the thread that failed
     char message[512];
 } sweep;
 
@@ -123,7 +126,7 @@ static void finish_groups(sweep *s, share *mine, size_t first, size_t last)
     {
         pls_drift_report part = {0.0, 0.0};
         size_t stop = row + BODY_BLOCK < end ? row + BODY_BLOCK : end;
-        mine->status = finish_block(s->world, row, stop, s->input.dt, s->time, s->go_on ? &part : NULL);
+        mine->status = finish_block(s->world, row, stop, s->input.dt, s->time, s->go_on, &part);
         add_report(&mine->report, &part);
     }
 }
@@ -188,7 +191,8 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
                          .growing = world->state_count > 0,
                          .dt = dt},
                .time = time,
-               .go_on = go_on};
+               .go_on = go_on,
+               .failed_at = SIZE_MAX};
 #pragma omp parallel if (list->block_count > SERIAL_BLOCKS || bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
         share mine = share_of(world, omp_get_thread_num(), omp_get_num_threads());
@@ -200,23 +204,24 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
 #pragma omp critical(pls_sweep)
         {
             add_report(&s.total, &mine.report);
-            if (mine.status != PLS_OK)
+            if (mine.status != PLS_OK && mine.first_block <= s.failed_at) // of several failures that of the first thread
             {
                 s.worst = mine.status;
+                s.failed_at = mine.first_block;
                 strncpy(s.message, pls_last_message(), sizeof s.message - 1); // messages belong to threads; bring it to ours
             }
         }
     }
     if (s.worst != PLS_OK) return pls_fail(s.worst, "%s", s.message);
     PLS_TRY(pls_book_parted(world));
-    return go_on ? judge_drift(world, &s.total) : PLS_OK;
+    return judge(world, &s.total, go_on);
 }
 
 static pls_status check_step(pls_world *world)
 {
     if (world->step % GUARD_STEPS == 0) PLS_TRY(pls_guard_step(world));
-    if (world->step % STABLE_STEPS == 0) PLS_TRY(pls_check_stable_step(world));
-    return PLS_OK;
+    bool due = world->step % STABLE_STEPS == 0 || (world->step % GUARD_STEPS == 0 && pls_stable_step_is_stale(world));
+    return due ? pls_check_stable_step(world) : PLS_OK;
 }
 
 /// From the drift to the end of the step; `go_on` runs the next step's half kick and drift along.

@@ -27,6 +27,7 @@ static const int least_iterations = 12;     ///< of the power method
 static const double slow_growth = 5e-4;     ///< relative growth of the quotient per iteration at which it stops
 static const int iterations = 60;           ///< of the power method; its quotient is then within the margin for packings of any size tried
 static const double quotient_margin = 1.03; ///< added to the quotient
+static const double much_change = 0.02;     ///< of a law's constants, after which the step is checked again
 static const double near_gap = 0.05;        ///< of the radius: pairs nearer than this count as contacts before the first step
 static const double typical_overlap =
     0.01; ///< of the radius: where a law whose stiffness vanishes at zero overlap is asked before grains touch
@@ -471,9 +472,22 @@ pls_status pls_choose_step(pls_world *world)
     return PLS_OK;
 }
 
+bool pls_stable_step_is_stale(const pls_world *world)
+{
+    for (size_t l = 0; world->binding_count > 0 && l < world->laws.law_count; ++l)
+        for (int k = 0; k < PLS_LAW_MAX_CONSTANTS; ++k)
+        {
+            double now = world->laws.law[l].constants[k], then = world->laws.law[l].checked[k];
+            if (now != then && !(fabs(now - then) <= much_change * fabs(then))) return true;
+        }
+    return false;
+}
+
 pls_status pls_check_stable_step(pls_world *world)
 {
     if (world->def.allow_unstable) return PLS_OK;
+    for (size_t l = 0; l < world->laws.law_count; ++l)
+        memcpy(world->laws.law[l].checked, world->laws.law[l].constants, sizeof world->laws.law[l].checked);
     pls_step_estimate e;
     estimate(world, 0, &e);
     if (world->dt <= e.dt) return PLS_OK;

@@ -6,6 +6,8 @@
 
 /// Choose dt, or check the one given, for the start of a run.
 pls_status pls_choose_step(pls_world *world);
+/// Have parameters that follow time or states changed the laws much since dt was last checked?
+bool pls_stable_step_is_stale(const pls_world *world);
 /// Check dt against the contacts of now.
 pls_status pls_check_stable_step(pls_world *world);
 

@@ -258,7 +258,8 @@ static inline __attribute__((always_inline)) void finish(group *g, const pls_row
 }
 
 static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt,
-                                                              const double *force, const double *torque, int skewed, pls_drift_report *next)
+                                                              const double *force, const double *torque, int skewed, bool go_on,
+                                                              pls_drift_report *report)
 {
     drift_sums sums = {0};
     for (size_t row = first; row < last; row += PLS_W)
@@ -276,17 +277,20 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
         }
         load_motion(&g);
         finish(&g, sum, dt);
-        if (next) begin(&g, dt, &sums);
-        store_motion(&g, next != NULL);
+        if (go_on)
+            begin(&g, dt, &sums);
+        else
+            for (int a = 0; a < 3; ++a) sums.poison = sums.poison + (g.place[4 + a] * 0.0 + g.spin[a] * 0.0);
+        store_motion(&g, go_on);
     }
-    if (next) report_drift(&sums, next);
+    report_drift(&sums, report);
 }
 
 void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
-                                 const double *torque, pls_drift_report *next)
+                                 const double *torque, bool go_on, pls_drift_report *report)
 {
     if (list->equal_radii)
-        finish_rows(bodies, list, first, last, dt, force, torque, 0, next);
+        finish_rows(bodies, list, first, last, dt, force, torque, 0, go_on, report);
     else
-        finish_rows(bodies, list, first, last, dt, force, torque, 1, next);
+        finish_rows(bodies, list, first, last, dt, force, torque, 1, go_on, report);
 }

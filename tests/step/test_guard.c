@@ -1,0 +1,97 @@
+// test_guard.c -- what stops a run: numbers that are not finite, in the step in which they appear; a step that has become too large.
+
+#include <particls/particls.h>
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/// A force that is NaN from the third evaluation on: the first belongs to the start, each further one to a step.
+static pls_status turning_sour(void *context, const pls_force_batch *batch)
+{
+    int *calls = context;
+    ++*calls;
+    for (size_t k = 0; k < batch->count; ++k) batch->force_x[k] += *calls >= 3 ? (double)NAN : 0.0;
+    return PLS_OK;
+}
+
+static const pls_force_ops sour = {
+    .api_version = PLS_API_VERSION, .name = "sour", .meaning = "a force that is not a number after a while", .evaluate = turning_sour};
+
+/// Spheres of radius 1 m and density 1, with the elastic law kn = 1 N/m, in a row with distance 1.99 m; the ends of a row of three are fixed.
+static pls_world *row_of_spheres(int count, double dt, pls_material_id *grain)
+{
+    pls_world_def def = pls_default_world_def(3);
+    def.dt = dt;
+    pls_world *world;
+    assert_int_equal(pls_world_create(&def, &world), PLS_OK);
+    const double radius[1] = {1.0}, law[3] = {1.0, 1.0, 0.5};
+    pls_shape_id ball;
+    assert_int_equal(pls_world_add_shape(world, "ball", pls_builtin_shapes()[0], radius, &ball), PLS_OK);
+    pls_material_def material = pls_default_material_def();
+    strcpy(material.name, "grain");
+    material.values.density = 1.0;
+    assert_int_equal(pls_world_add_material(world, &material, grain), PLS_OK);
+    assert_int_equal(pls_world_set_law(world, *grain, *grain, pls_builtin_laws()[0], law), PLS_OK);
+    for (int k = 0; k < count; ++k)
+    {
+        pls_body_def body = pls_default_body_def();
+        body.shape = ball;
+        body.material = *grain;
+        body.position = pls_vec(1.99 * k, 0.0, 0.0);
+        if (count == 3 && k != 1) body.motion.axes = PLS_AXIS_ALL;
+        pls_body_id id;
+        assert_int_equal(pls_world_add_body(world, &body, &id), PLS_OK);
+    }
+    return world;
+}
+
+static void the_step_that_makes_a_velocity_not_a_number_is_refused(void **state)
+{
+    (void)state;
+    static int calls;
+    calls = 0;
+    pls_material_id grain;
+    pls_world *world = row_of_spheres(1, 1e-3, &grain);
+    assert_int_equal(pls_world_add_force(world, &sour, &calls), PLS_OK);
+    assert_int_equal(pls_step(world), PLS_OK);
+    assert_int_equal(pls_step(world), PLS_NOT_A_NUMBER);
+    assert_non_null(strstr(pls_last_message(), "nan"));
+    pls_world_destroy(world);
+}
+
+/// 1 N/m, and a million times that from t = 1 s on.
+static pls_status stiffens(void *context, double time, const double *states, double *value)
+{
+    (void)context;
+    (void)states;
+    *value = time < 1.0 ? 1.0 : 1e6;
+    return PLS_OK;
+}
+
+/// A sphere at rest between two that are fixed: w^2 = 2 kn/m, m = 4/3 pi kg, the limit 2/w is 2.9 s with 1 N/m and 2.9 ms with 1e6 N/m.
+static void a_law_that_stiffens_is_noticed_within_64_steps(void **state)
+{
+    (void)state;
+    pls_material_id grain;
+    pls_world *world = row_of_spheres(3, 0.01, &grain);
+    assert_int_equal(pls_world_bind_law_parameter(world, grain, grain, "kn", stiffens, NULL, NULL), PLS_OK);
+    pls_status status = PLS_OK;
+    int steps = 0;
+    for (; steps < 400 && status == PLS_OK; ++steps) status = pls_step(world);
+    assert_int_equal(status, PLS_UNSTABLE_STEP);
+    assert_in_range(steps, 100, 164);
+    pls_world_destroy(world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_step_that_makes_a_velocity_not_a_number_is_refused),
+                                       cmocka_unit_test(a_law_that_stiffens_is_noticed_within_64_steps)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
