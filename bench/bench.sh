@@ -39,14 +39,14 @@ done
 
 peer=1
 if ! command -v lmp >/dev/null; then
-    if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then
-        echo "Installing lammps, to compare with"
-        if ! { apt-get -qq update && DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends lammps >/dev/null; }; then
-            echo "bench.sh: installing lammps failed" >&2
-        fi
-    fi
+    "$root/scripts/install-packages" lammps || echo "bench.sh: installing lammps failed" >&2
     command -v lmp >/dev/null || { peer=0; echo "bench.sh: LAMMPS is missing (apt-get install lammps): going on without it" >&2; }
 fi
+
+# What is measured: the commit, and whether the tree differs from it in more than what this script writes.
+commit=$(git -C "$root" log -1 --format=', commit %h' 2>/dev/null) || true
+changes=$(git -C "$root" status --porcelain -- "$root" ":(exclude,top)docs/performance.md" ":(exclude,top,glob)docs/figures/bench-*" 2>/dev/null) || true
+[ -z "$changes" ] || commit+=" with uncommitted changes"
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -151,7 +151,7 @@ processor	$(LC_ALL=C lscpu | sed -n 's/^Model name: *//p' | head -1), $(nproc) p
 caches	$(LC_ALL=C lscpu | sed -n 's/^\(L[1-3][di]*\) cache: */\1 /p' | paste -sd ',' | sed 's/,/, /g')
 memory	$(awk '/^MemTotal/ { printf "%.1f GiB", $2 / 1048576 }' /proc/meminfo)
 kernel	$(uname -sr)
-particls	$version$(git -C "$root" log -1 --format=', commit %h' 2>/dev/null || true)
+particls	$version$commit
 compiler	$("$(readlink -f "${compiler:-$(command -v cc)}")" --version | head -1)
 LAMMPS	$(if [ $peer = 1 ]; then (lmp -h 2>/dev/null || true) | sed -n "s/^Large-scale.*Simulator - \(.*\)/\1, neighbour skin $skin m/p" | head -1; else echo "missing (apt-get install lammps): nothing is compared with it"; fi)
 TEXT

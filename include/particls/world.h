@@ -1,7 +1,7 @@
 /// @file world.h
 /// The world: shapes, materials, bodies, laws, forces and states, and the step that advances them.
 ///
-///     pls_world_def def = pls_default_world_def();
+///     pls_world_def def = pls_default_world_def(3);
 ///     pls_world *world;
 ///     pls_world_create(&def, &world);
 ///     pls_world_add_shape(...); pls_world_add_material(...); pls_world_set_law(...); pls_world_add_body(...);
@@ -163,8 +163,8 @@ size_t pls_world_body_count(const pls_world *world);
 size_t pls_world_contact_count(const pls_world *world);
 /// 64-bit hash of all persistent fields in order of ids, time and step.
 pls_status pls_world_state_hash(pls_world *world, uint64_t *hash);
-/// Persistent number of the body in each memory row; `count` entries.
-const uint32_t *pls_world_rows_by_number(const pls_world *world, size_t *count); ///< row of each number, UINT32_MAX where removed
+/// Memory row of each persistent number, UINT32_MAX where the body was removed; `*count` numbers. Valid until the next step or change of the world.
+const uint32_t *pls_world_rows_by_number(const pls_world *world, size_t *count);
 
 typedef struct pls_body_motion
 {
@@ -175,8 +175,10 @@ typedef struct pls_body_motion
 } pls_body_motion;
 /// STALE_ID if it is gone.
 pls_status pls_body_get(const pls_world *world, pls_body_id id, pls_body_motion *motion);
+/// INVALID_ARGUMENT for what is not finite, and in 2D for velocities out of the x-y plane or rotations not about z.
 pls_status pls_body_set_velocity(pls_world *world, pls_body_id id, pls_vec3 velocity, pls_vec3 angular_velocity);
 pls_status pls_state_get(const pls_world *world, pls_state_id id, double *values);
+/// INVALID_ARGUMENT for what is not finite.
 pls_status pls_state_set(pls_world *world, pls_state_id id, const double *values);
 /// Null ids when there is none of that name.
 pls_group_id pls_world_find_group(const pls_world *world, const char *name);

@@ -14,12 +14,14 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
+#include "base/sort.h"
 
 #include <string.h>
 
 enum {
     MAX_LEVELS = 32,
-    LOOK_BLOCK = 512 ///< bodies per block of the search
+    LOOK_BLOCK = 512, ///< bodies per block of the search
+    LONG_ROW = 64     ///< pairs of one body above which they are sorted by digits
 };
 
 typedef struct packed_body
@@ -251,10 +253,7 @@ typedef struct look_buffer
 static pls_status emit(const grids *g, look_buffer *out, const packed_body *a, const packed_body *b, const int16_t step[3])
 {
     // `step`: b's image lies at its wrapped position + step * edge. Positions themselves are not wrapped, so the images they lie in count too.
-    const pls_bodies *bodies = g->bodies;
-    if (bodies->load[a->row].inv_mass == 0.0 && bodies->load[b->row].inv_mass == 0.0 &&
-        !((bodies->kind[a->row].flags | bodies->kind[b->row].flags) & PLS_BODY_SPECIAL))
-        return PLS_OK;
+    if (!pls_pair_matters(g->bodies, a->row, b->row)) return PLS_OK;
     if (out->count == out->capacity) PLS_TRY(pls_reserve(&out->pair, &out->capacity, out->count + 1024, sizeof *out->pair, "near pairs"));
     bool swap = b->number < a->number;
     pls_near_pair *pair = &out->pair[out->count++];
@@ -332,6 +331,42 @@ static pls_status look_block(const grids *g, size_t block, look_buffer *out)
 static uint32_t lower_row(const pls_near_pair *pair) { return pair->owner < pair->partner ? pair->owner : pair->partner; }
 static uint32_t upper_row(const pls_near_pair *pair) { return pair->owner < pair->partner ? pair->partner : pair->owner; }
 
+/// Many pairs of one body, far larger than its neighbours.
+static pls_status order_long_row(pls_near_pair *p, size_t n)
+{
+    uint32_t *keys = NULL, *from = NULL;
+    pls_near_pair *copy = NULL;
+    pls_status status = pls_allocate(&keys, n, sizeof *keys, "ordering near pairs");
+    if (status == PLS_OK) status = pls_allocate(&from, n, sizeof *from, "ordering near pairs");
+    if (status == PLS_OK) status = pls_allocate(&copy, n, sizeof *copy, "ordering near pairs");
+    for (size_t k = 0; status == PLS_OK && k < n; ++k)
+    {
+        keys[k] = upper_row(&p[k]);
+        from[k] = (uint32_t)k;
+        copy[k] = p[k];
+    }
+    if (status == PLS_OK) status = pls_radix_sort_u32(keys, from, n);
+    for (size_t k = 0; status == PLS_OK && k < n; ++k) p[k] = copy[from[k]];
+    pls_release(&keys);
+    pls_release(&from);
+    pls_release(&copy);
+    return status;
+}
+
+static pls_status order_row(pls_near_pair *p, size_t n)
+{
+    if (n > LONG_ROW) return order_long_row(p, n);
+    for (size_t k = 1; k < n; ++k) // nearly in order
+    {
+        pls_near_pair moving = p[k];
+        uint32_t key = upper_row(&moving);
+        size_t m = k;
+        for (; m > 0 && upper_row(&p[m - 1]) > key; --m) p[m] = p[m - 1];
+        p[m] = moving;
+    }
+    return PLS_OK;
+}
+
 /// Bring the blocks' pairs into order of the lower row, then of the other.
 static pls_status order_pairs(const grids *g, const look_buffer *buffer, size_t blocks, pls_near_pairs *pairs)
 {
@@ -347,22 +382,20 @@ static pls_status order_pairs(const grids *g, const look_buffer *buffer, size_t 
     for (size_t row = 2; row < rows + 2; ++row) start[row] += start[row - 1];
     for (size_t b = 0; b < blocks; ++b)
         for (size_t k = 0; k < buffer[b].count; ++k) pairs->pair[start[lower_row(&buffer[b].pair[k]) + 1]++] = buffer[b].pair[k];
+    pls_status worst = PLS_OK;
 #pragma omp parallel for schedule(static)
     for (size_t row = 0; row < rows; ++row)
     {
-        pls_near_pair *p = pairs->pair + start[row];
-        size_t n = start[row + 1] - start[row];
-        for (size_t k = 1; k < n; ++k) // short rows, nearly in order
+        pls_status status = order_row(pairs->pair + start[row], start[row + 1] - start[row]);
+        if (status != PLS_OK)
         {
-            pls_near_pair moving = p[k];
-            uint32_t key = upper_row(&moving);
-            size_t m = k;
-            for (; m > 0 && upper_row(&p[m - 1]) > key; --m) p[m] = p[m - 1];
-            p[m] = moving;
+#pragma omp critical(pls_broad_phase_failure)
+            worst = status;
         }
     }
-    pairs->count = total;
     pls_release(&start);
+    if (worst != PLS_OK) return pls_fail(worst, "no memory to order the near pairs");
+    pairs->count = total;
     return PLS_OK;
 }
 

@@ -19,7 +19,14 @@ typedef struct pls_near_pairs
     size_t count, capacity;
 } pls_near_pairs;
 
-/// Pairs with |X_j - X_i| < r_i + r_j + gap. Pairs of which no force moves either body are left out.
+/// Whether a force between two bodies may matter: not where none moves either and nobody asks for it.
+static inline bool pls_pair_matters(const pls_bodies *bodies, uint32_t a, uint32_t b)
+{
+    return bodies->load[a].inv_mass != 0.0 || bodies->load[b].inv_mass != 0.0 ||
+           ((bodies->kind[a].flags | bodies->kind[b].flags) & PLS_BODY_SPECIAL);
+}
+
+/// Pairs with |X_j - X_i| < r_i + r_j + gap that matter. LIMIT_EXCEEDED where a periodic edge is shorter than 4 r_max + 2 gap.
 pls_status pls_broad_phase(const pls_bodies *bodies, const pls_domain *domain, double gap, pls_near_pairs *pairs);
 void pls_near_pairs_free(pls_near_pairs *pairs);
 

@@ -1,6 +1,7 @@
 // pair_list.c -- making the Verlet list.
 //
-// Steps: near pairs from the broad phase and body-wall pairs -> sections by law (stable, so each keeps the order of rows) -> memory of contacts put back by
+// Steps: near pairs from the broad phase, body-wall pairs, and pairs that touched at the last step wherever they are now -> sections by law (stable, so each keeps
+// the order of rows) -> memory of contacts put back by
 // number -> gather rows, each in order of the partner's number.
 
 #include "contact/pair_list.h"
@@ -9,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/sort.h"
 #include "contact/broad_phase.h"
+#include "contact/contact_memory.h"
 #include "contact/sphere_contact.h"
 
 #include <string.h>
@@ -24,45 +26,11 @@ static pls_status renew(void *block, size_t *capacity, size_t needed, size_t siz
     return PLS_OK;
 }
 
-pls_status pls_contact_memory_reserve(pls_contact_memory *memory, size_t count)
-{
-    return pls_reserve(&memory->entry, &memory->capacity, count, sizeof *memory->entry, "what contacts remember");
-}
-
-void pls_contact_memory_free(pls_contact_memory *memory)
-{
-    pls_release(&memory->entry);
-    memset(memory, 0, sizeof *memory);
-}
-
 size_t pls_pair_list_touching(const pls_pair_list *list)
 {
     size_t count = 0;
     for (size_t k = 0; k < list->count / 8; ++k) count += (size_t)__builtin_popcount(list->touch[k]);
     return count;
-}
-
-pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory)
-{
-    memory->count = 0;
-    PLS_TRY(pls_contact_memory_reserve(memory, pls_pair_list_touching(list)));
-    for (size_t s = 0; s < list->section_count; ++s)
-    {
-        const pls_pair_section *section = &list->section[s];
-        for (size_t c = section->first; c < section->first + section->count; ++c)
-        {
-            if (!pls_pair_touches(list, c)) continue;
-            double numbers[3 + PLS_LAW_MAX_HISTORY] = {0};
-            pls_pair_history_read(list, section, c, numbers);
-            struct pls_remembered *entry = &memory->entry[memory->count++];
-            memset(entry, 0, sizeof *entry);
-            entry->number_i = bodies->kind[list->row_i[c]].number;
-            entry->number_j = bodies->kind[list->row_j[c]].number;
-            memcpy(entry->spring, numbers, sizeof entry->spring);
-            memcpy(entry->history, numbers + 3, sizeof entry->history);
-        }
-    }
-    return PLS_OK;
 }
 
 // ---- sections ---------------------------------------------------------------------------------------------------------------------------------------
@@ -117,7 +85,7 @@ typedef struct wall_pairs
 
 /// Bodies near one wall, one section per law.
 static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double gap,
-                           uint32_t wall, wall_pairs *found)
+                           const pls_kept_pairs *kept, uint32_t wall, wall_pairs *found)
 {
     pls_vec3 n = pls_wall_normal(&bodies->orientation[wall], domain->dimension);
     const pls_body_place *w = &bodies->place[wall];
@@ -131,7 +99,8 @@ static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const 
         {
             const pls_body_place *p = &bodies->place[row];
             double height = n.x * (p->x - w->x) + n.y * (p->y - w->y) + n.z * (p->z - w->z);
-            if (!(height < p->radius + gap) || (bodies->kind[row].flags & PLS_BODY_UNBOUNDED)) continue;
+            if (bodies->kind[row].flags & PLS_BODY_UNBOUNDED) continue;
+            if (!(height < p->radius + gap) && !pls_is_kept_at_wall(kept, wall, row)) continue;
             if (bodies->load[row].inv_mass == 0.0 && bodies->load[wall].inv_mass == 0.0 && !(bodies->kind[row].flags & PLS_BODY_SPECIAL))
                 continue;
             uint16_t its = pls_law_table_find(laws, bodies->kind[row].material, bodies->kind[wall].material);
@@ -147,14 +116,14 @@ static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const 
 }
 
 static pls_status wall_sections(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
-                                double gap, wall_pairs *found)
+                                double gap, const pls_kept_pairs *kept, wall_pairs *found)
 {
     list->wall_first = list->count;
     for (uint32_t number = 0; number < bodies->numbers; ++number) // in order of numbers: sections do not depend on memory order
     {
         uint32_t row = bodies->row_of[number];
         if (row != PLS_NO_ROW && (bodies->kind[row].flags & PLS_BODY_UNBOUNDED))
-            PLS_TRY(one_wall(list, bodies, domain, laws, gap, row, found));
+            PLS_TRY(one_wall(list, bodies, domain, laws, gap, kept, row, found));
     }
     return PLS_OK;
 }
@@ -298,51 +267,6 @@ static void fill_candidates(pls_pair_list *list, const pls_bodies *bodies, const
     }
 }
 
-// ---- memory of contacts -----------------------------------------------------------------------------------------------------------------------------
-
-/// Find what was remembered of a pair; entries of a body's number lie together.
-static const struct pls_remembered *recall(const pls_contact_memory *memory, const uint32_t *start, const uint32_t *order, uint32_t i,
-                                           uint32_t j)
-{
-    for (uint32_t k = start[i]; k < start[i + 1]; ++k)
-        if (memory->entry[order[k]].number_j == j) return &memory->entry[order[k]];
-    return NULL;
-}
-
-static pls_status put_back(pls_pair_list *list, const pls_bodies *bodies, const pls_contact_memory *memory)
-{
-    if (memory->count == 0) return PLS_OK;
-    uint32_t *start = NULL, *order = NULL;
-    PLS_TRY(pls_allocate(&start, bodies->numbers + 2, sizeof *start, "recalling contacts"));
-    pls_status status = pls_allocate(&order, memory->count, sizeof *order, "recalling contacts");
-    if (status != PLS_OK)
-    {
-        pls_release(&start);
-        return status;
-    }
-    for (size_t k = 0; k < memory->count; ++k) ++start[memory->entry[k].number_i + 2];
-    for (size_t n = 2; n < bodies->numbers + 2; ++n) start[n] += start[n - 1];
-    for (size_t k = 0; k < memory->count; ++k) order[start[memory->entry[k].number_i + 1]++] = (uint32_t)k;
-    for (size_t s = 0; s < list->section_count; ++s)
-    {
-        const pls_pair_section *section = &list->section[s];
-#pragma omp parallel for schedule(static)
-        for (size_t byte = section->first / 8; byte < (section->first + section->count + 7) / 8; ++byte)
-            for (size_t c = byte * 8; c < byte * 8 + 8 && c < section->first + section->count; ++c)
-            {
-                const struct pls_remembered *entry =
-                    recall(memory, start, order, bodies->kind[list->row_i[c]].number, bodies->kind[list->row_j[c]].number);
-                if (!entry) continue;
-                double *history = pls_pair_history(list, section, c);
-                for (int h = 0; h < section->numbers; ++h) history[8 * h] = h < 3 ? entry->spring[h] : entry->history[h - 3];
-                list->touch[byte] = (uint8_t)(list->touch[byte] | 1u << (c & 7));
-            }
-    }
-    pls_release(&start);
-    pls_release(&order);
-    return PLS_OK;
-}
-
 // ---- gather rows ------------------------------------------------------------------------------------------------------------------------------------
 
 static uint32_t partner_number(const pls_pair_list *list, const pls_bodies *bodies, uint32_t entry)
@@ -386,7 +310,7 @@ static pls_status gather_rows(pls_gather_rows *rows, const pls_pair_list *list, 
     {
         uint32_t *e = rows->entry + rows->start[row];
         size_t n = rows->start[row + 1] - rows->start[row];
-        if (n > 64) // a wall or a body far larger than its neighbours
+        if (n > PLS_LONG_ROW) // a wall or a body far larger than its neighbours
         {
             uint32_t *keys = NULL;
             pls_status status = pls_allocate(&keys, n, sizeof *keys, "ordering gather rows");
@@ -446,10 +370,10 @@ static pls_status forget_touching_entries(pls_pair_list *list, size_t rows)
 }
 
 static pls_status lay_out(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws, double skin,
-                          const pls_near_pairs *near, wall_pairs *found, size_t *next)
+                          const pls_near_pairs *near, const pls_kept_pairs *kept, wall_pairs *found, size_t *next)
 {
     PLS_TRY(pair_sections(list, bodies, laws, near, next));
-    PLS_TRY(wall_sections(list, bodies, domain, laws, skin, found));
+    PLS_TRY(wall_sections(list, bodies, domain, laws, skin, kept, found));
     PLS_TRY(reserve_candidates(list, domain->any_periodic));
     fill_candidates(list, bodies, laws, near, found, next, domain->any_periodic);
     return cut_blocks(list);
@@ -474,15 +398,19 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
     list->stale = true; // until it is whole
     list->equal_radii = !growing && have_equal_radii(bodies);
     pls_near_pairs near = {0};
+    pls_kept_pairs kept = {0};
     wall_pairs found = {0};
     size_t *next = NULL;
     pls_status status = pls_broad_phase(bodies, domain, skin, &near);
+    if (status == PLS_OK) status = pls_find_kept(&kept, bodies, domain, skin, memory);
+    if (status == PLS_OK) status = pls_add_kept(&near, &kept, bodies, domain);
     if (status == PLS_OK) status = pls_allocate(&next, laws->law_count + 1, sizeof *next, "sections of the pair list");
-    if (status == PLS_OK) status = lay_out(list, bodies, domain, laws, skin, &near, &found, next);
+    if (status == PLS_OK) status = lay_out(list, bodies, domain, laws, skin, &near, &kept, &found, next);
     pls_near_pairs_free(&near);
+    pls_kept_pairs_free(&kept);
     pls_release(&found.row);
     pls_release(&next);
-    if (status == PLS_OK) status = put_back(list, bodies, memory);
+    if (status == PLS_OK) status = pls_contact_memory_put_back(list, bodies, memory);
     if (status == PLS_OK) status = gather_rows(&list->pairs, list, bodies, false);
     if (status == PLS_OK) status = gather_rows(&list->walls, list, bodies, true);
     if (status == PLS_OK) status = bound_groups(list, bodies->count);

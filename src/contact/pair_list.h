@@ -144,7 +144,7 @@ void pls_contact_memory_free(pls_contact_memory *memory);
 /// Everything the touching contacts of the list remember, in list order.
 pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory);
 
-/// Make the list: all pairs nearer than `skin`, with the memory of contacts from `memory`. `growing`: radii may change while it is in use.
+/// Make the list: all pairs nearer than `skin` and all in `memory`, with the memory of contacts from `memory`. `growing`: radii may change while it is in use.
 /// NOT_FOUND names two materials without a law; LIMIT_EXCEEDED for a periodic box narrower than two interaction ranges.
 pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
                                double skin, bool growing, const pls_contact_memory *memory);

@@ -14,8 +14,7 @@
 #define HEADER_NUMBERS(X)                              \
     X("step", step, H5T_STD_U64LE, H5T_NATIVE_UINT64)  \
     X("time", time, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE) \
-    X("dt", dt, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)     \
-    X("body_numbers", body_numbers, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
+    X("dt", dt, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
 
 static hid_t file_type(pls_type type)
 {

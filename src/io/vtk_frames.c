@@ -1,7 +1,7 @@
 // vtk_frames.c -- what a frame holds: bodies as points with fields from the field table, contacts as lines.
 
 #include "base/registry.h"
-#include "contact/contact_view.h"
+#include "step/contact_view.h"
 #include "io/vtk.h"
 
 #include <string.h>

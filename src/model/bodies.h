@@ -1,8 +1,8 @@
 // bodies.h -- the bodies' columns and the one table that describes them (DESIGN contract 2).
 //
-// What the contact loop reaches by index lies in two packed rows per body, `place` (one cache line) and `spin` (half of one); what passes once per step lies in
-// further columns. PLS_BODY_COLUMNS lists the columns, PLS_BODY_FIELDS every value in them: allocation, growth, re-ordering, checkpoints, hashes, frames and
-// the docs page of fields follow from these two lists.
+// What the contact loop reaches by index lies in two packed rows per body, `place` and `spin` (one cache line each); what passes once per step
+// lies in further columns. PLS_BODY_COLUMNS lists the columns, PLS_BODY_FIELDS every value in them: allocation, growth, re-ordering, checkpoints,
+// hashes, frames and the docs page of fields follow from these two lists.
 //
 // A body has a number, given once, and a row, its place in memory. Numbers order all sums and files; rows follow a space-filling curve and change at will.
 #ifndef PLS_MODEL_BODIES_H

@@ -5,7 +5,7 @@
 #ifndef PLS_OBSERVE_SUMS_H
 #define PLS_OBSERVE_SUMS_H
 
-#include "contact/contact_view.h"
+#include "step/contact_view.h"
 #include "observe/surroundings.h"
 
 #include <particls/observe.h>

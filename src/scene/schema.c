@@ -221,7 +221,7 @@ static const pls_key keys[] = {
     {"neighbours", "reorder", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "true", ANY, "keep bodies in memory along a space-filling curve"},
 
     {"guard", "max_overlap", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "1", POSITIVE,
-     "stop when an overlap exceeds this fraction of the smaller radius"},
+     "stop when an overlap, of two bodies or with a wall, exceeds this fraction of the smaller radius (at a wall: the body's)"},
 
     {"observe_collection", "collection", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a body entry, or all"},
     {"observe_collection", "quantities", PLS_KEY_WORDS, 0, 0, "stress|tangent|fabric|coordination|energy|momentum|porosity", NULL, "",

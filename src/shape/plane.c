@@ -5,7 +5,8 @@
 static const pls_parameter parameters[] = {
     {.name = "lets_go",
      .unit = "",
-     .meaning = "0: it pushes back at any depth; 1: it lets go of a body whose centre has crossed its surface, as LAMMPS's region walls do",
+     .meaning = "0: it pushes back at any depth (a run stops beyond guard.max_overlap); 1: it lets go of a body whose centre has crossed "
+                "its surface, as LAMMPS's region walls do",
      .initial = 0.0,
      .minimum = 0.0,
      .maximum = 1.0},

@@ -1,6 +1,6 @@
 // contact_view.c -- the touching contacts after the last step, rebuilt from the list and its slots.
 
-#include "contact/contact_view.h"
+#include "step/contact_view.h"
 
 #include "base/alloc.h"
 #include "step/world.h"

@@ -1,4 +1,4 @@
-// fields.c -- the tables of fields (DESIGN contract 2): bodies from the list in model/bodies.h, contacts and states from here.
+// fields.c -- the tables of fields (DESIGN contract 2): bodies from the list in model/bodies.h, the other tables from here.
 
 #include "contact/pair_list.h"
 #include "model/bodies.h"
@@ -59,6 +59,11 @@ static const pls_field state_fields[] = {
     {"value", PLS_F64, 1, PERSISTS | ID, "", "values of all states in order of creation", 0, 0},
 };
 
+static const pls_field number_fields[] = {
+    {"generation", PLS_U32, 1, PERSISTS, "",
+     "how often number 0, 1, ... has been given: ids given after a restart are those of an undisturbed run", 0, 0},
+};
+
 static const struct
 {
     const char *name;
@@ -68,6 +73,7 @@ static const struct
     [PLS_TABLE_BODIES] = {"bodies", body_fields, sizeof body_fields / sizeof body_fields[0]},
     [PLS_TABLE_CONTACTS] = {"contacts", contact_fields, sizeof contact_fields / sizeof contact_fields[0]},
     [PLS_TABLE_STATES] = {"states", state_fields, sizeof state_fields / sizeof state_fields[0]},
+    [PLS_TABLE_NUMBERS] = {"numbers", number_fields, sizeof number_fields / sizeof number_fields[0]},
 };
 
 const pls_field *pls_fields(pls_table_kind table, size_t *count)

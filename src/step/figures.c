@@ -4,7 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
-#include "contact/contact_view.h"
+#include "step/contact_view.h"
 
 #include <string.h>
 

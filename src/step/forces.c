@@ -12,8 +12,8 @@ pls_status pls_body_forces(const pls_world *world, size_t first, size_t last, do
     size_t n = last - first;
     double *in[INPUTS], *out[6];
     for (int k = 0; k < INPUTS; ++k) in[k] = scratch + k * PLS_FORCE_BATCH;
-    uint32_t *body = (uint32_t *)(scratch + INPUTS * PLS_FORCE_BATCH), *group = body + PLS_FORCE_BATCH;
-    for (int k = 0; k < 6; ++k) out[k] = scratch + (INPUTS + 2 + k) * PLS_FORCE_BATCH;
+    uint32_t body[PLS_FORCE_BATCH] __attribute__((aligned(64))), group[PLS_FORCE_BATCH] __attribute__((aligned(64)));
+    for (int k = 0; k < 6; ++k) out[k] = scratch + (INPUTS + k) * PLS_FORCE_BATCH;
     for (size_t m = 0; m < n; ++m)
     {
         const pls_body_place *p = &world->bodies.place[first + m];

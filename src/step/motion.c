@@ -248,14 +248,19 @@ static pls_status drift_driven(pls_world *world, pls_special *s)
 
 pls_status pls_special_drift(pls_world *world)
 {
+    double further = 0.0; // than the pass over all bodies moved this one, and noted: a given velocity may jump
     for (size_t k = 0; k < world->special_count; ++k)
     {
         pls_special *s = &world->special[k];
+        const pls_body_place *p = &world->bodies.place[s->row];
+        double noted = pls_length(pls_sub(place_position(p), s->position));
         if (world->bodies.kind[s->row].flags & PLS_BODY_SPECIAL)
             PLS_TRY(drift_driven(world, s));
         else
             drift_anisotropic(world, s);
+        further = fmax(further, pls_length(pls_sub(place_position(p), s->position)) - noted);
     }
+    pls_neighbours_carried(world, further);
     return PLS_OK;
 }
 

@@ -62,6 +62,22 @@ static void tune_skin(pls_world *world)
     tuner->builds = 0;
 }
 
+/// Keep the skin within what periodic edges leave beside two largest diameters (broad_phase.c). A given skin is shortened too, as no skin changes a result and
+/// boxes may shrink: a run stops only where the bodies themselves no longer fit.
+static void fit_skin(pls_world *world)
+{
+    double largest = 0.0;
+    if (!world->domain.any_periodic) return;
+    for (size_t row = 0; row < world->bodies.count; ++row)
+        if (!(world->bodies.kind[row].flags & PLS_BODY_UNBOUNDED)) largest = fmax(largest, world->bodies.place[row].radius);
+    for (int a = 0; a < 3; ++a)
+    {
+        if (!world->domain.periodic[a]) continue;
+        double edge = world->domain.edge[a], room = 0.5 * edge - 2.0 * largest - 1e-9 * edge;
+        world->tuner.skin = fmax(0.0, fmin(world->tuner.skin, room));
+    }
+}
+
 /// Put bodies into the order of a space-filling curve. The contacts must be in `memory`.
 static pls_status order_bodies(pls_world *world)
 {
@@ -114,6 +130,8 @@ void pls_neighbours_moved(pls_world *world, double largest_square)
     world->list.image_drift += images;
 }
 
+void pls_neighbours_carried(pls_world *world, double further) { world->list.drift += 2.0 * further; }
+
 /// Sum of the two largest true displacements since the list was made, growth of radii included.
 static double true_drift(const pls_world *world)
 {
@@ -157,6 +175,7 @@ pls_status pls_neighbours_refresh(pls_world *world)
     }
     PLS_TRY(pls_neighbours_detach(world));
     tune_skin(world);
+    fit_skin(world);
     if (world->def.reorder && list->builds % builds_per_order == 0) PLS_TRY(order_bodies(world));
     PLS_TRY(
         pls_pair_list_build(list, &world->bodies, &world->domain, &world->laws, world->tuner.skin, world->state_count > 0, &world->memory));

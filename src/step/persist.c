@@ -44,11 +44,11 @@ pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
         return status;
     }
     world->persisting = contacts;
-    *header =
-        (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt, .body_numbers = (double)world->bodies.numbers};
+    *header = (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt};
     header->rows[PLS_TABLE_BODIES] = world->bodies.count;
     header->rows[PLS_TABLE_CONTACTS] = contacts->count;
     header->rows[PLS_TABLE_STATES] = world->value_count;
+    header->rows[PLS_TABLE_NUMBERS] = world->bodies.numbers;
     return PLS_OK;
 }
 
@@ -83,6 +83,11 @@ pls_status pls_persist_get(pls_world *world, pls_table_kind table, const pls_fie
         if (world->value_count) memcpy(to, world->state_value, world->value_count * sizeof(double));
         return PLS_OK;
     }
+    if (table == PLS_TABLE_NUMBERS)
+    {
+        if (world->bodies.numbers) memcpy(to, world->bodies.generation_of, world->bodies.numbers * size);
+        return PLS_OK;
+    }
     const pls_contact_memory *contacts = world->persisting;
     if (!contacts) return pls_fail(PLS_INVALID_ARGUMENT, "the contact table is read between pls_persist_save_begin and _end");
     for (size_t k = 0; k < contacts->count; ++k) memcpy(to + k * size, (const char *)&contacts->entry[k] + field->offset, size);
@@ -96,19 +101,22 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
     if (header->rows[PLS_TABLE_STATES] != world->value_count)
         return pls_fail(PLS_CORRUPT, "the saved state holds %llu state values, the scene has %zu",
                         (unsigned long long)header->rows[PLS_TABLE_STATES], world->value_count);
-    if (header->rows[PLS_TABLE_BODIES] >= PLS_NO_ROW || header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || !(header->dt > 0.0) ||
-        !isfinite(header->time))
+    if (header->rows[PLS_TABLE_NUMBERS] >= PLS_NO_ROW || header->rows[PLS_TABLE_BODIES] > header->rows[PLS_TABLE_NUMBERS] ||
+        header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || !(header->dt > 0.0) || !isfinite(header->time))
         return pls_fail(PLS_CORRUPT, "the saved state has an impossible header");
     if (world->bodies.count > 0 && world->extent == 0.0) PLS_TRY(pls_measure_extent(world)); // the first arrangement, not the restored one
     pls_bodies *bodies = &world->bodies;
     pls_bodies_clear(bodies);
-    size_t rows = (size_t)header->rows[PLS_TABLE_BODIES];
-    PLS_TRY(pls_bodies_reserve(bodies, rows));
+    size_t rows = (size_t)header->rows[PLS_TABLE_BODIES], numbers = (size_t)header->rows[PLS_TABLE_NUMBERS];
+    PLS_TRY(pls_bodies_reserve(bodies, numbers));
     for (size_t k = 0; k < rows; ++k)
     {
         uint32_t row;
         PLS_TRY(pls_bodies_add_numbered(bodies, (uint32_t)k, 1, &row)); // true numbers follow with the fields
     }
+    for (size_t n = rows; n < numbers; ++n) bodies->row_of[n] = PLS_NO_ROW, bodies->generation_of[n] = 0;
+    bodies->numbers = numbers;
+    bodies->removed = numbers - rows;
     PLS_TRY(pls_contact_memory_reserve(&world->memory, (size_t)header->rows[PLS_TABLE_CONTACTS]));
     world->memory.count = (size_t)header->rows[PLS_TABLE_CONTACTS];
     world->memory_holds = true;
@@ -134,6 +142,10 @@ pls_status pls_persist_put(pls_world *world, pls_table_kind table, const pls_fie
     {
         if (world->value_count) memcpy(world->state_value, from, world->value_count * sizeof(double));
     }
+    else if (table == PLS_TABLE_NUMBERS)
+    {
+        if (world->bodies.numbers) memcpy(world->bodies.generation_of, from, world->bodies.numbers * size);
+    }
     else
         for (size_t k = 0; k < world->memory.count; ++k) memcpy((char *)&world->memory.entry[k] + field->offset, from + k * size, size);
     return PLS_OK;
@@ -143,6 +155,8 @@ static pls_status check_body(const pls_world *world, size_t row)
 {
     const pls_body_kind *kind = &world->bodies.kind[row];
     const pls_body_place *p = &world->bodies.place[row];
+    if (kind->number >= world->bodies.numbers || kind->generation != world->bodies.generation_of[kind->number])
+        return pls_fail(PLS_CORRUPT, "saved body %u has a number or generation that was never given", kind->number);
     if (row > 0 && kind->number <= world->bodies.kind[row - 1].number)
         return pls_fail(PLS_CORRUPT, "the saved bodies are not in order of their numbers");
     if (kind->shape >= world->shape_count || kind->material >= world->laws.material_count || kind->group > world->group_count ||
@@ -154,28 +168,18 @@ static pls_status check_body(const pls_world *world, size_t row)
     return PLS_OK;
 }
 
-/// Numbers as they were saved; what was free stays free.
-static pls_status restore_numbers(pls_world *world)
+/// Which row each number has; what was free stays free, with its generation.
+static void restore_rows(pls_bodies *bodies)
 {
-    pls_bodies *bodies = &world->bodies;
-    size_t count = bodies->count, numbers = count ? (size_t)bodies->kind[count - 1].number + 1 : 0;
-    PLS_TRY(pls_bodies_reserve(bodies, numbers));
-    for (size_t n = 0; n < numbers; ++n) bodies->row_of[n] = PLS_NO_ROW, bodies->generation_of[n] = 1;
-    for (size_t row = 0; row < count; ++row)
-    {
-        bodies->row_of[bodies->kind[row].number] = (uint32_t)row;
-        bodies->generation_of[bodies->kind[row].number] = bodies->kind[row].generation;
-    }
-    bodies->numbers = numbers;
-    bodies->removed = numbers - count;
-    return PLS_OK;
+    for (size_t n = 0; n < bodies->numbers; ++n) bodies->row_of[n] = PLS_NO_ROW;
+    for (size_t row = 0; row < bodies->count; ++row) bodies->row_of[bodies->kind[row].number] = (uint32_t)row;
 }
 
 pls_status pls_persist_restore_end(pls_world *world)
 {
     pls_bodies *bodies = &world->bodies;
     for (size_t row = 0; row < bodies->count; ++row) PLS_TRY(check_body(world, row));
-    PLS_TRY(restore_numbers(world));
+    restore_rows(bodies);
     for (size_t k = 0; k < world->memory.count; ++k)
     {
         const struct pls_remembered *entry = &world->memory.entry[k];

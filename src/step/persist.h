@@ -16,7 +16,6 @@ typedef struct pls_persist_header
     uint64_t step;                  ///< steps done
     double time;                    ///< [s]
     double dt;                      ///< [s]
-    double body_numbers;            ///< numbers ever given to bodies (largest + 1)
 } pls_persist_header;
 
 /// Start reading: makes the contact table. The world must not change until all is read.

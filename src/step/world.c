@@ -628,6 +628,13 @@ pls_status pls_body_set_velocity(pls_world *world, pls_body_id id, pls_vec3 v, p
     uint32_t row = pls_body_row(world, id);
     if (row == PLS_NO_ROW) return pls_fail(PLS_STALE_ID, "the body to set does not exist (any more)");
     if (!finite_vec(v) || !finite_vec(w)) return pls_fail(PLS_INVALID_ARGUMENT, "the velocity to set is not finite");
+    if (world->def.dimension == 2 && (v.z != 0.0 || w.x != 0.0 || w.y != 0.0))
+        return pls_fail(
+            PLS_INVALID_ARGUMENT,
+            "the velocity to set has v_z = %g m/s, w_x = %g rad/s, w_y = %g rad/s; in 2D bodies stay in the x-y plane and turn about z",
+            v.z, w.x, w.y);
+    // A turning wall sweeps far points quickly, so its list holds all bodies; that of a wall at rest does not.
+    if (world->bodies.kind[row].flags & PLS_BODY_UNBOUNDED) PLS_TRY(pls_neighbours_detach(world));
     pls_body_place *p = &world->bodies.place[row];
     pls_body_spin *s = &world->bodies.spin[row];
     p->vx = v.x, p->vy = v.y, p->vz = v.z;
@@ -652,6 +659,10 @@ pls_status pls_state_set(pls_world *world, pls_state_id id, const double *values
 {
     const pls_state_instance *state = find_state(world, id);
     if (!state) return pls_fail(PLS_STALE_ID, "the state to set does not exist");
+    for (int c = 0; c < state->def.components; ++c)
+        if (!isfinite(values[c]))
+            return pls_fail(PLS_INVALID_ARGUMENT, "component %d of state '%s' would be set to %g; it must be finite", c, state->def.name,
+                            values[c]);
     memcpy(world->state_value + state->first, values, (size_t)state->def.components * sizeof *values);
     return PLS_OK;
 }

@@ -137,6 +137,8 @@ pls_status pls_states_apply(pls_world *world);
 // neighbours.c
 /// Note how far bodies may have moved in this step.
 void pls_neighbours_moved(pls_world *world, double largest_square);
+/// Note by how much [m] a body, at most, went further in this step than was noted.
+void pls_neighbours_carried(pls_world *world, double further);
 pls_status pls_neighbours_refresh(pls_world *world);
 /// Move what contacts remember out of the list, before bodies, laws or rows change.
 pls_status pls_neighbours_detach(pls_world *world);
@@ -156,7 +158,7 @@ pls_status pls_world_resume(pls_world *world);
 
 // forces.c
 pls_status pls_body_forces(const pls_world *world, size_t first, size_t last, double time, double *scratch, double *force, double *torque);
-enum { PLS_FORCE_SCRATCH = 11 * PLS_FORCE_BATCH + 2 * PLS_FORCE_BATCH + 6 * PLS_FORCE_BATCH }; ///< doubles
+enum { PLS_FORCE_SCRATCH = (11 + 6) * PLS_FORCE_BATCH }; ///< doubles: what forces read and what they give
 
 // guard.c
 pls_status pls_guard_finite(pls_world *world);

@@ -4,7 +4,7 @@
 #include "support/verify.h"
 
 #include "base/random.h"
-#include "contact/contact_view.h"
+#include "step/contact_view.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 // test_allocation.c -- every allocation of a complete small run may fail: each time the call returns OUT_OF_MEMORY, nothing leaks, nothing crashes.
-#include "contact/contact_view.h"
+#include "step/contact_view.h"
 #include "support/snapshot.h"
 
 #include <particls/observe.h>

@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
 # A run that is killed or interrupted at any instant, and resumed, leaves the same files as an undisturbed one: series, frames and checkpoints
 # byte for byte, the summary but for wall times. Runs in an empty folder with PARTICLS (the program).
-#   PARTICLS_KILLS   random moments to try (5); half as many again with Ctrl-C
+#   PARTICLS_KILLS   random moments to try on each scene (5); half as many again with Ctrl-C
 #   PARTICLS_SEED    of the moments
-#   PARTICLS_SCENE   another scene
+#   PARTICLS_SCENE   another scene instead of the two below
 set -euo pipefail
 set -m # jobs in the background keep SIGINT
 
 kills=${PARTICLS_KILLS:-5}
 RANDOM=${PARTICLS_SEED:-$$}
-scene=${PARTICLS_SCENE:-scene.yaml}
 echo "seed ${PARTICLS_SEED:-$$}"
 
-cat >scene.yaml <<'YAML'
+cat >grows.yaml <<'YAML'
 particls: 1
 title: spheres fall on a plane, are hit by a driven wall, one of them grows
 dimension: 3
@@ -37,6 +36,32 @@ observe:
   - {particle: pusher, name: pusher, quantities: [position, force], every_steps: 7}
   - {frames: vtk, name: picture, every: 0.02, contacts: true}
   - {checkpoint: {every: 0.05}}
+YAML
+
+# Nothing is driven and nothing grows, and all radii are equal: only so do steps run into each other, and contacts go in whole vectors.
+cat >equal.yaml <<'YAML'
+particls: 1
+title: equal spheres, packed so densely that they touch, fall on a plane
+dimension: 3
+materials:
+  grain: {density: 1000}
+shapes:
+  ball: {sphere: {radius: 0.05}}
+  wall: {plane: {}}
+bodies:
+  - {name: pack, shape: ball, material: grain, velocity: [0.3, 0.1, -1], place: {hex_pack: {count: [10, 10, 10], corner: [0, 0, 0.01], spacing: 0.099}}}
+  - {name: floor, shape: wall, material: grain, position: [0, 0, 0], normal: [0, 0, 1]}
+  - {name: side, shape: wall, material: grain, position: [-0.01, 0, 0], normal: [1, 0, 0]}
+contact:
+  - {between: [grain, grain], law: viscoelastic, kn: 20000, ks: 10000, cn: 4, cs: 2, friction: 0.4}
+forces:
+  - {gravity: [0, 0, -9.81]}
+time: {end: 0.12, dt: 1.0e-4}
+observe:
+  - {collection: all, name: heap, quantities: [stress, fabric, coordination, energy, momentum], every: 0.002}
+  - {particle: floor, name: floor, quantities: [position, force], every_steps: 7}
+  - {frames: vtk, name: picture, every: 0.02, contacts: true}
+  - {checkpoint: {every: 0.02}}
 YAML
 
 same_results() { # <directory>: the same as in ./reference
@@ -71,41 +96,59 @@ finish() { # <directory>: resume until it is done, as a user would
     fi
 }
 
-begin=$(date +%s%N)
-"$PARTICLS" run "$scene" -o reference --quiet
-duration=$((($(date +%s%N) - begin) / 1000000))
-echo "the undisturbed run takes $duration ms"
+undisturbed() { # makes ./reference
+    local begin
+    begin=$(date +%s%N)
+    "$PARTICLS" run "$scene" -o reference --quiet
+    duration=$((($(date +%s%N) - begin) / 1000000))
+    echo "$scene: the undisturbed run takes $duration ms"
+}
 
-for ((k = 0; k < kills; ++k)); do
-    "$PARTICLS" run "$scene" -o killed --quiet &
-    stop_after_a_while KILL $!
-    if ((k % 2 == 1)) && [ -e killed/scene.used.yaml ]; then # and again while it goes on
-        "$PARTICLS" resume killed --quiet >>log 2>&1 &
+kill_runs() {
+    for ((k = 0; k < kills; ++k)); do
+        "$PARTICLS" run "$scene" -o killed --quiet &
         stop_after_a_while KILL $!
-    fi
-    finish killed
-    same_results killed
-    rm -r killed
-done
+        if ((k % 2 == 1)) && [ -e killed/scene.used.yaml ]; then # and again while it goes on
+            "$PARTICLS" resume killed --quiet >>log 2>&1 &
+            stop_after_a_while KILL $!
+        fi
+        finish killed
+        same_results killed
+        rm -r killed
+    done
+}
 
-for ((k = 0; k < (kills + 1) / 2; ++k)); do
-    status=0
-    "$PARTICLS" run "$scene" -o interrupted --quiet >>log 2>&1 &
-    stop_after_a_while INT $!
-    if ((status > 1)) && [ -e interrupted/scene.used.yaml ]; then
-        echo "Ctrl-C: exit status $status instead of 0 or 1" >&2
-        exit 1
-    fi
-    finish interrupted
-    same_results interrupted
-    rm -r interrupted
-done
+interrupt_runs() {
+    for ((k = 0; k < (kills + 1) / 2; ++k)); do
+        status=0
+        "$PARTICLS" run "$scene" -o interrupted --quiet >>log 2>&1 &
+        stop_after_a_while INT $!
+        if ((status > 1)) && [ -e interrupted/scene.used.yaml ]; then
+            echo "Ctrl-C: exit status $status instead of 0 or 1" >&2
+            exit 1
+        fi
+        finish interrupted
+        same_results interrupted
+        rm -r interrupted
+    done
+}
 
-# A run that ends early and is then asked for more has the series and frames of one that went on at once.
-if [ "$scene" = scene.yaml ]; then
-    "$PARTICLS" run "$scene" -o extended --until 0.17 --quiet
-    "$PARTICLS" resume extended --until 0.4 --quiet
+extend_run() { # <first end> <end>: a run that ends early and is then asked for more has the series and frames of one that went on at once
+    "$PARTICLS" run "$scene" -o extended --until "$1" --quiet
+    "$PARTICLS" resume extended --until "$2" --quiet
     diff -r --brief reference/series extended/series
     diff -r --brief reference/frames extended/frames
-fi
-echo "$kills runs killed, $(((kills + 1) / 2)) interrupted: all ended like the undisturbed one"
+    rm -r extended
+}
+
+for scene in ${PARTICLS_SCENE:-grows.yaml equal.yaml}; do
+    undisturbed
+    kill_runs
+    interrupt_runs
+    case $scene in
+        grows.yaml) extend_run 0.17 0.4 ;;
+        equal.yaml) extend_run 0.07 0.12 ;;
+    esac
+    echo "$scene: $kills runs killed, $(((kills + 1) / 2)) interrupted: all ended like the undisturbed one"
+    rm -rf reference
+done

@@ -79,6 +79,28 @@ static void a_restored_world_goes_on_with_the_same_bits(void **state)
     assert_int_equal(pls_memory_in_use(), 0);
 }
 
+static void numbers_that_are_free_come_back_with_their_generations(void **state)
+{
+    (void)state;
+    pls_world *first = saved_world(), *second = new_world();
+    size_t numbers, restored;
+    pls_world_rows_by_number(first, &numbers);
+    pls_body_id last = {(uint32_t)numbers, 1};
+    must(pls_world_remove_body(first, last));
+    must(pls_checkpoint_write(path, first, 77, run_text));
+    pls_checkpoint checkpoint = {0};
+    must(pls_checkpoint_open(&checkpoint, path));
+    must(pls_checkpoint_restore(&checkpoint, second));
+    pls_checkpoint_close(&checkpoint);
+    pls_world_rows_by_number(second, &restored);
+    assert_int_equal(restored, numbers);
+    pls_body_motion motion;
+    assert_int_equal(pls_body_get(second, last, &motion), PLS_STALE_ID);
+    assert_int_equal(hash_of(first), hash_of(second));
+    pls_world_destroy(first);
+    pls_world_destroy(second);
+}
+
 static void equal_states_give_equal_bytes(void **state)
 {
     (void)state;
@@ -218,6 +240,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_restored_world_goes_on_with_the_same_bits),
+        cmocka_unit_test(numbers_that_are_free_come_back_with_their_generations),
         cmocka_unit_test(equal_states_give_equal_bytes),
         cmocka_unit_test(every_flipped_byte_is_found),
         cmocka_unit_test(a_file_cut_off_anywhere_is_found),

@@ -2,18 +2,19 @@
 # The long verification campaign: writes docs/verification.md and docs/figures/verify-*.svg. Builds nothing.
 #
 #     tests/prove/prove.sh [build folder]        build/release by default
+#     PARTICLS_KILLS                             runs to kill on each scene, 50 by default
 #
-# Exit status 1 when a comparison is out of tolerance; the page is written all the same.
+# Exit status 1 when a comparison is out of tolerance or bits differ; the page is written all the same.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
-build=${1:-$root/build/release}
+build=$(realpath "${1:-$root/build/release}") # absolute: scripts run in folders of their own
 program=$build/tests/prove/prove
 particls=$build/bin/particls
 figures=$root/docs/figures
 page=$root/docs/verification.md
 
-for needed in "$program" "$particls"; do
+for needed in "$program" "$particls" "$build"/tests/determinism/test_{threads,lists,restart,steps}; do
     [ -x "$needed" ] || { echo "prove.sh: $needed is missing: run make build first" >&2; exit 2; }
 done
 command -v gnuplot >/dev/null || { echo "prove.sh: gnuplot is missing: apt-get install gnuplot-nox" >&2; exit 2; }
@@ -34,6 +35,34 @@ python3 "$root/tests/verify/compare_compression.py" "$scratch/compression" "$roo
     >"$scratch/compression.md" || status=1
 ended=$SECONDS
 
+# The tests of equal bits, a row for each claim; then runs that are killed.
+equal_bits() # <test of determinism> <what is compared>
+{
+    OMP_WAIT_POLICY=passive "$build/tests/determinism/test_$1" >"$scratch/claims" 2>&1 || { status=1; tail -n 5 "$scratch/claims" >&2; }
+    awk -v what="$2" '
+        /^\[       OK \]/ || /^\[  FAILED  \] [a-z]/ {
+            claim = $NF; gsub("_", " ", claim)
+            if (!(claim in seen)) print "| " what " | " claim " | " (/OK/ ? "yes" : "**no**") " |"
+            seen[claim] = 1
+        }' "$scratch/claims" >>"$scratch/bits.md"
+}
+
+equal_bits threads "threads: 1, 2, 3, 4"
+equal_bits lists "skin: 0.1, 1, 3 times its own; order in memory: sorted or not"
+equal_bits restart "restart after 1 to 300 steps, ten moments"
+equal_bits steps "instruction set: v2, v3, v4; one run, pieces, single steps"
+
+mkdir "$scratch/kill"
+seed=${PARTICLS_SEED:-$$}
+(cd "$scratch/kill" && OMP_WAIT_POLICY=passive PARTICLS_KILLS=${PARTICLS_KILLS:-50} PARTICLS_SEED=$seed PARTICLS=$particls \
+    bash "$root/tests/faults/test_kill.sh") >"$scratch/kill.log" 2>&1 || { status=1; tail -n 5 "$scratch/kill.log" >&2; }
+for scene in grows equal; do
+    awk -v scene="$scene.yaml" '
+        $1 == scene ":" && $3 == "runs" { killed = $2; interrupted = $5 }
+        END { print "| " scene " | " (killed ? killed " | " interrupted " | yes |" : "| | **no** |") }' "$scratch/kill.log" >>"$scratch/kill.md"
+done
+repeated=$SECONDS
+
 gnuplot -e "data='$scratch'; out='$figures'" "$root/tests/prove/figures.gp"
 
 figure() # <name> <caption>: a figure of the page, if its data exist
@@ -45,7 +74,7 @@ figure() # <name> <caption>: a figure of the page, if its data exist
     cat <<TEXT
 # Verification
 
-Physics with known answers, run in full. The tests run the same cases in short forms (\`tests/verify\`); this page is written by \`make prove\`
+Physics with known answers, run in full, and at the end [equal bits](#equal-bits). The tests run the same cases in short forms (\`tests/verify\`); this page is written by \`make prove\`
 (\`tests/prove\`). References are formulas or calculations of the tests' own, for the [compression](#uniaxial-compression-of-16500-spheres-against-lammps) results of LAMMPS:
 no reference comes from the library.
 What the columns say: *error* is the distance of the measured value from the reference (*rel.*: divided by the reference; without a reference the
@@ -58,7 +87,7 @@ Impacts start at many phases of the time grid, because a contact law has a kink,
 |---|---|
 | version | $(sed -n 's/^#define PLS_VERSION_TEXT *"\(.*\)"/\1/p' "$root/include/particls/types.h") |
 | processor | $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1) |
-| took | $((known - start)) s, the compression $((ended - known)) s |
+| took | $((known - start)) s, the compression $((ended - known)) s, equal bits $((repeated - ended)) s |
 
 $(tail -qn 1 "$scratch/tables.md" "$scratch/compression.md" | awk '{ all += $1; failed += $3 } END { print all " comparisons, " failed " out of tolerance." }')
 
@@ -81,6 +110,29 @@ TEXT
 
 TEXT
     head -n -2 "$scratch/compression.md"
+    cat <<TEXT
+
+## Equal bits
+
+The same input gives the same bits. Compared are hashes over the state of all bodies, contacts and states, several times along the way of heaps of
+several hundred to a few thousand spheres (\`tests/determinism\`): loose ones with radii 1 : 2.5, in which a sphere grows and a state drives the law; dense ones
+without states, of equal spheres and of two sizes 1 : 2.5, in which whole vectors of contacts touch and steps run into each other; between walls and in
+periodic boxes, in 2D and 3D.
+
+| compared | claim | equal |
+|---|---|---|
+TEXT
+    cat "$scratch/bits.md"
+    cat <<TEXT
+
+Runs of the program are killed (SIGKILL, every other one again while it resumes) or interrupted (SIGINT) at random moments and resumed
+(\`tests/faults/test_kill.sh\`, seed $seed). Series, frames and checkpoints must be those of an undisturbed run byte for byte, the summary but for wall times.
+In \`grows.yaml\` a wall is driven and a sphere grows; in \`equal.yaml\` equal spheres fall and nothing is driven.
+
+| scene | killed | interrupted | files equal |
+|---|---:|---:|---|
+TEXT
+    cat "$scratch/kill.md"
 } >"$page"
 echo "$page"
 exit "$status"

@@ -2,7 +2,12 @@
 
 #include "base/random.h"
 
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <string.h>
+#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -11,7 +16,14 @@ heap_setup heap_default(int dimension, int count)
     return (heap_setup){.dimension = dimension, .count = count, .size_ratio = 2.5, .states = true, .reorder = true};
 }
 
-// Spheres start on a jittered lattice with the spacing of the largest, so that they do not overlap; the largest radius is 0.48.
+heap_setup heap_dense(int dimension, int count, double size_ratio, bool periodic)
+{
+    return (heap_setup){
+        .dimension = dimension, .count = count, .size_ratio = size_ratio, .periodic = periodic, .dense = true, .reorder = true};
+}
+
+// Spheres start on a lattice of spacing 1. Loose: the largest radius is 0.48 and places are jittered, so that none overlap. Dense: radii alternate like the ions
+// of rock salt and neighbours along the axes overlap by 0.01; at 2.5 large ones touch across the diagonals too.
 static int lattice_side(const heap_setup *setup) { return (int)ceil(setup->dimension == 2 ? sqrt(setup->count) : cbrt(setup->count)); }
 
 static pls_status growth_rate(void *context, const pls_state_point *at, const double *values, double *rate)
@@ -37,17 +49,25 @@ static pls_status stiffness(void *context, double time, const double *states, do
     return PLS_OK;
 }
 
-static double radius_of(const heap_setup *setup, pls_random *random) { return 0.48 * pow(setup->size_ratio, -pls_random_uniform(random)); }
+static double large_radius(const heap_setup *setup) { return setup->dense ? 1.01 * setup->size_ratio / (1.0 + setup->size_ratio) : 0.48; }
+
+static double radius_of(const heap_setup *setup, pls_vec3 site, pls_random *random)
+{
+    double large = large_radius(setup), uniform = pls_random_uniform(random);
+    if (!setup->dense) return large * pow(setup->size_ratio, -uniform);
+    bool even = ((int)floor(site.x) + (int)floor(site.y) + (int)floor(site.z)) % 2 == 0;
+    return even ? large : large / setup->size_ratio;
+}
 
 static pls_body_id add_sphere(const heap_setup *setup, const verify_scene *scene, uint64_t number, pls_vec3 position)
 {
     pls_random random = pls_random_stream(11, number, PLS_FOR_USER);
     bool flat = setup->dimension == 2;
-    double r = radius_of(setup, &random), mass = flat ? pi * r * r : 4.0 / 3.0 * pi * r * r * r;
-    double jitter = 0.9 * (0.5 - r);
+    double r = radius_of(setup, position, &random), mass = flat ? pi * r * r : 4.0 / 3.0 * pi * r * r * r;
+    double jitter = setup->dense ? 0.002 : 0.9 * (0.5 - r);
     pls_vec3 d = pls_vec(2 * pls_random_uniform(&random) - 1, 2 * pls_random_uniform(&random) - 1, 2 * pls_random_uniform(&random) - 1);
     pls_vec3 v = pls_vec(pls_random_normal(&random), pls_random_normal(&random), pls_random_normal(&random)), w = pls_scale(v, -2.0);
-    v = pls_scale(v, 4.0); // so fast that they have met after some hundred steps
+    v = pls_scale(v, setup->dense ? 0.5 : 4.0); // loose: so fast that they have met after some hundred steps
     if (flat) d.z = v.z = w.x = w.y = 0.0;
     pls_body_def ball = verify_ball_def(scene, r, mass, pls_add(position, pls_scale(d, jitter)), v);
     ball.angular_velocity = w;
@@ -100,20 +120,33 @@ heap heap_open(heap_setup given)
         if (k == setup->count / 2) middle = id;
     }
     pls_vec3 up = flat ? pls_vec(0, 1, 0) : pls_vec(0, 0, 1);
-    verify_wall(&scene, pls_vec(0, 0, 0), up);
+    double low = setup->dense ? 0.5 - 0.99 * large_radius(setup) : 0.0, high = side - low;
+    verify_wall(&scene, pls_vec(low, low, flat ? 0 : low), up);
     if (!setup->periodic)
     {
-        verify_wall(&scene, pls_vec(0, 0, 0), pls_vec(1, 0, 0));
-        verify_wall(&scene, pls_vec(side, 0, 0), pls_vec(-1, 0, 0));
-        if (!flat) verify_wall(&scene, pls_vec(0, 0, 0), pls_vec(0, 1, 0));
-        if (!flat) verify_wall(&scene, pls_vec(0, side, 0), pls_vec(0, -1, 0));
+        verify_wall(&scene, pls_vec(low, 0, 0), pls_vec(1, 0, 0));
+        verify_wall(&scene, pls_vec(high, 0, 0), pls_vec(-1, 0, 0));
+        if (!flat) verify_wall(&scene, pls_vec(0, low, 0), pls_vec(0, 1, 0));
+        if (!flat) verify_wall(&scene, pls_vec(0, high, 0), pls_vec(0, -1, 0));
     }
-    MUST(pls_world_add_gravity(scene.world, pls_scale(up, -100.0)));
+    MUST(pls_world_add_gravity(scene.world, pls_scale(up, setup->dense ? -30.0 : -100.0)));
     if (setup->states) add_states(&scene, first);
     return (heap){given, scene, middle};
 }
 
 void heap_close(heap *h) { verify_close(&h->scene); }
+
+void heap_expect_contacts(heap *h)
+{
+    const size_t block = 128, serial_blocks = 4; // more blocks than these are shared among threads
+    size_t count = (size_t)h->setup.count;
+    pls_world_figures figures = verify_figures(h->scene.world);
+    assert_true(figures.touching > count / 10);
+    if (!h->setup.dense) return;
+    assert_true(figures.touching > (h->setup.dimension == 2 ? count : 2 * count));
+    assert_true(figures.touching > 2 * serial_blocks * block);
+    if (h->setup.skin == 0.0) assert_true(2 * figures.touching > figures.listed);
+}
 
 void heap_change_bodies(heap *h)
 {

@@ -1,7 +1,7 @@
 // cases_hertz.c -- Hertz-Mindlin contact from E and nu of the materials (Johnson, Contact Mechanics, sections 4.2, 7.2 and 11.4).
 #include "verify/cases.h"
 
-#include "contact/contact_view.h"
+#include "step/contact_view.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 // contact_view.h -- the touching contacts after the last step, in order of ids, for whoever looks at them: observers, checkpoints, frames.
-#ifndef PLS_CONTACT_CONTACT_VIEW_H
-#define PLS_CONTACT_CONTACT_VIEW_H
+#ifndef PLS_STEP_CONTACT_VIEW_H
+#define PLS_STEP_CONTACT_VIEW_H
 
 #include <particls/world.h>
 
