@@ -313,7 +313,7 @@ static inline void begin_springs(const pls_contact_work *work, size_t k, double 
 
 static inline unsigned fresh_lanes(const pls_contact_work *work, size_t k)
 {
-    return (work->fresh[k >> 3] >> (k & 7)) & ((1u << PLS_W) - 1);
+    return ((unsigned)work->fresh[k >> 3] >> (k & 7)) & ((1u << PLS_W) - 1);
 }
 
 /// Springs as they would be now had they not slid. Stored ones are in the list's history (`whole`) or in `spring` already.
