@@ -22,7 +22,7 @@ static pls_status contact_table(pls_world *world, pls_contact_memory *memory)
     if (world->memory_holds)
     {
         PLS_TRY(pls_contact_memory_reserve(memory, world->memory.count));
-        memcpy(memory->entry, world->memory.entry, world->memory.count * sizeof *memory->entry);
+        if (world->memory.count > 0) memcpy(memory->entry, world->memory.entry, world->memory.count * sizeof *memory->entry);
         memory->count = world->memory.count;
     }
     else if (world->list.count > 0)
