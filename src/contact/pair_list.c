@@ -163,8 +163,6 @@ static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
     return PLS_OK;
 }
 
-static uint32_t lower_row(const pls_pair_list *list, size_t c) { return list->row_i[c] < list->row_j[c] ? list->row_i[c] : list->row_j[c]; }
-
 static pls_status cut_sections(pls_pair_list *list, bool walls)
 {
     for (size_t s = 0; s < list->section_count; ++s)
@@ -195,7 +193,7 @@ static pls_status order_blocks(pls_pair_list *list)
     if (status == PLS_OK) status = pls_allocate(&copy, count, sizeof *copy, "blocks of the pair list");
     for (size_t b = 0; status == PLS_OK && b < count; ++b)
     {
-        keys[b] = lower_row(list, mine[b].first);
+        keys[b] = pls_pair_lower_row(list, mine[b].first);
         order[b] = (uint32_t)b;
         copy[b] = mine[b];
     }

@@ -98,6 +98,12 @@ typedef struct pls_pair_list
     uint64_t builds;
 } pls_pair_list;
 
+/// The lower of a candidate's two memory rows, which orders the list.
+static inline uint32_t pls_pair_lower_row(const pls_pair_list *list, size_t candidate)
+{
+    uint32_t i = list->row_i[candidate], j = list->row_j[candidate];
+    return i < j ? i : j;
+}
 /// Number of the slot that is always zero.
 static inline size_t pls_zero_slot(const pls_pair_list *list) { return list->wall_first; }
 static inline double *pls_wall_slot(const pls_pair_list *list, size_t candidate)

@@ -93,9 +93,7 @@ typedef struct share
 
 static size_t group_of_block(const pls_pair_list *list, size_t block, size_t groups)
 {
-    if (block >= list->block_count) return groups;
-    size_t c = list->block[block].first;
-    return (list->row_i[c] < list->row_j[c] ? list->row_i[c] : list->row_j[c]) / PLS_ROW_GROUP;
+    return block < list->block_count ? pls_pair_lower_row(list, list->block[block].first) / PLS_ROW_GROUP : groups;
 }
 
 static share share_of(const pls_world *world, int thread, int threads)
@@ -193,6 +191,7 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
                .time = time,
                .go_on = go_on,
                .failed_at = SIZE_MAX};
+    for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
 #pragma omp parallel if (list->block_count > SERIAL_BLOCKS || bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
         share mine = share_of(world, omp_get_thread_num(), omp_get_num_threads());
