@@ -50,6 +50,7 @@ typedef struct pls_contact_input
     const pls_domain *domain;
     const pls_law_table *laws;
     bool large;   ///< bodies and contacts do not fit the near caches: fetch ahead
+    bool vast;    ///< nor the last one
     bool growing; ///< radii may have changed in this step
     double dt;    ///< [s]; 0 at the start of a run: no time has passed, springs and dissipation stay
 } pls_contact_input;

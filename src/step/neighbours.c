@@ -9,13 +9,12 @@
 
 #include <string.h>
 
-static const double first_skin = 0.2;    ///< of the mean radius, where the search for the best skin starts
-static const double least_skin = 0.02;   ///< of the mean radius
-static const double most_skin = 1.5;     ///< of the mean radius
-static const double first_change = 1.25; ///< first factor tried; it shrinks towards `last_change`
+static const double first_skin = 0.3;   ///< of the mean radius, where the search for the best skin starts
+static const double least_skin = 0.02;  ///< of the mean radius
+static const double most_skin = 1.5;    ///< of the mean radius
+static const double first_change = 1.5; ///< first factor tried; it shrinks towards `last_change`
 static const double last_change = 1.05;
-static const int builds_per_window = 6;      ///< rebuilds measured before the skin is changed
-static const double window_seconds = 0.2;    ///< wall time measured at least
+static const double window_seconds = 0.3;    ///< wall time measured at least before the skin is changed: whole lives of lists
 static const uint64_t builds_per_order = 24; ///< rebuilds between looks at the memory order
 
 static double mean_radius(const pls_world *world)
@@ -48,7 +47,7 @@ static void tune_skin(pls_world *world)
         return;
     }
     double elapsed = now - tuner->since;
-    if (++tuner->builds < builds_per_window || elapsed < window_seconds) return;
+    if (elapsed < window_seconds) return;
     double cost = elapsed / (double)(world->step - tuner->steps + 1);
     if (cost > tuner->last_cost)
     {
@@ -59,7 +58,6 @@ static void tune_skin(pls_world *world)
     tuner->skin = fmin(fmax(tuner->skin * tuner->factor, least_skin * mean), most_skin * mean);
     tuner->since = now;
     tuner->steps = world->step;
-    tuner->builds = 0;
 }
 
 /// Keep the skin within what periodic edges leave beside two largest diameters (broad_phase.c). A given skin is shortened too, as no skin changes a result and

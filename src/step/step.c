@@ -186,6 +186,7 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
                          .domain = &world->domain,
                          .laws = &world->laws,
                          .large = bodies->count > PLS_LARGE_WORLD,
+                         .vast = bodies->count > PLS_VAST_WORLD,
                          .growing = world->state_count > 0,
                          .dt = dt},
                .time = time,

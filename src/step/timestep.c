@@ -10,33 +10,20 @@
 // makes it exact for two spheres. A contact with a wall has b = 0 and weight 1.
 //
 // The bound can be half of the truth where neighbours cannot all move against a body at once. So a step that fails it is judged by the largest eigenvalues of the
-// whole themselves, found by power iteration (a Rayleigh quotient, which errs to the small side, and a margin).
+// whole themselves (whole_rates.c).
 //
 // Before grains touch, the estimate adds contacts, evenly spread, up to the assumed coordination: a loose packing will become a dense one.
 
 #include "step/timestep.h"
 
-#include "base/alloc.h"
-#include "base/random.h"
 #include "math/eigen6.h"
+#include "step/whole_rates.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static const int least_iterations = 12;     ///< of the power method
-static const double slow_growth = 5e-4;     ///< relative growth of the quotient per iteration at which it stops
-static const int iterations = 60;           ///< of the power method; its quotient is then within the margin for packings of any size tried
-static const double quotient_margin = 1.03; ///< added to the quotient
-static const double much_change = 0.02;     ///< of a law's constants, after which the step is checked again
-static const double near_gap = 0.05;        ///< of the radius: pairs nearer than this count as contacts before the first step
-static const double typical_overlap =
-    0.01; ///< of the radius: where a law whose stiffness vanishes at zero overlap is asked before grains touch
-
-typedef struct body_rates
-{
-    double stiffness[36], damping[36]; ///< M^-1/2 A M^-1/2 for K and C
-    int contacts;
-} body_rates;
+static const double much_change = 0.02; ///< of a law's constants, after which the step is checked again
+static const double near_gap = 0.05;    ///< of the radius: pairs nearer than this count as contacts before the first step
 
 static double stable_dt(double stiffness, double damping)
 {
@@ -65,116 +52,19 @@ static void add_contact(double *a, int dimension, pls_vec3 n, double lever, doub
         }
 }
 
-static double smallest_moment(const pls_body_mass *m, int dimension) { return dimension == 2 ? m->iz : fmin(m->ix, fmin(m->iy, m->iz)); }
-
-/// A contact as the estimate sees it.
-typedef struct joint
-{
-    uint32_t i, j; ///< rows
-    bool held;     ///< no force moves j
-    pls_vec3 n;
-    double lever_i, lever_j;
-    pls_contact_stiffness k;
-} joint;
-
-static joint joint_of(const pls_world *world, size_t c)
-{
-    const pls_pair_list *list = &world->list;
-    const pls_bodies *b = &world->bodies;
-    const pls_pair_section *section = list->section;
-    while (c < section->first || c >= section->first + section->count) ++section;
-    joint t = {.i = list->row_i[c], .j = list->row_j[c]};
-    const pls_body_place *p = &b->place[t.i], *q = &b->place[t.j];
-    double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius;
-    if (section->wall)
-    {
-        t.n = pls_scale(pls_wall_normal(&b->orientation[t.j], world->def.dimension), -1.0);
-        delta = p->radius - (t.n.x * d[0] + t.n.y * d[1] + t.n.z * d[2]);
-        radius = p->radius;
-    }
-    else
-    {
-        for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
-        double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        t.n = pls_vec(d[0] / distance, d[1] / distance, d[2] / distance);
-        delta = p->radius + q->radius - distance;
-        radius = p->radius * q->radius / (p->radius + q->radius);
-        t.lever_j = q->radius - 0.5 * delta;
-    }
-    t.lever_i = p->radius - 0.5 * delta;
-    t.held = section->wall || b->load[t.j].inv_mass == 0.0;
-    const pls_law *law = &world->laws.law[section->law];
-    const double zeros[PLS_LAW_MAX_HISTORY] = {0};
-    pls_contact_point point = {.delta = fmax(delta, 0.0),
-                               .effective_radius = radius,
-                               .effective_mass = 1.0 / (b->load[t.i].inv_mass + b->load[t.j].inv_mass),
-                               .history = zeros};
-    law->ops->stiffness(law->constants, &point, &t.k);
-    return t;
-}
-
-static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, body_rates *rates)
+static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, pls_body_rates *rates)
 {
     if (!pls_pair_touches(&world->list, entry >> 1)) return;
     const pls_bodies *b = &world->bodies;
-    joint t = joint_of(world, entry >> 1);
+    pls_joint t = pls_joint_of(world, entry >> 1);
     uint32_t other = row == t.i ? t.j : t.i;
     double m = b->mass[row].mass;
     double ratio = b->load[other].inv_mass > 0.0 ? fmin(fmax(m / b->mass[other].mass, 1.0 / 3.0), 3.0) : 0.0;
-    double root_mass = 1.0 / sqrt(m), root_inertia = 1.0 / sqrt(smallest_moment(&b->mass[row], world->def.dimension));
+    double root_mass = 1.0 / sqrt(m), root_inertia = 1.0 / sqrt(pls_smallest_moment(&b->mass[row], world->def.dimension));
     double lever = row == t.i ? t.lever_i : t.lever_j, weight = 1.0 + ratio;
     add_contact(rates->stiffness, world->def.dimension, t.n, lever, root_mass, root_inertia, weight * t.k.kn, weight * t.k.kt);
     add_contact(rates->damping, world->def.dimension, t.n, lever, root_mass, root_inertia, weight * t.k.cn, weight * t.k.ct);
     ++rates->contacts;
-}
-
-/// The stiffest contact a body's material can have with its like or another.
-static bool typical_contact(const pls_world *world, uint32_t row, pls_contact_stiffness *out)
-{
-    const pls_bodies *b = &world->bodies;
-    bool any = false;
-    *out = (pls_contact_stiffness){0};
-    double radius = b->place[row].radius;
-    for (size_t m = 0; m < world->laws.material_count; ++m)
-    {
-        uint16_t index = pls_law_table_find(&world->laws, b->kind[row].material, (uint16_t)m);
-        if (index == PLS_NO_LAW) continue;
-        const pls_law *law = &world->laws.law[index];
-        const double zeros[PLS_LAW_MAX_HISTORY] = {0};
-        pls_contact_point point = {.delta = typical_overlap * radius,
-                                   .effective_radius = 0.5 * radius,
-                                   .effective_mass = 0.5 * b->mass[row].mass,
-                                   .history = zeros};
-        pls_contact_stiffness k;
-        law->ops->stiffness(law->constants, &point, &k);
-        out->kn = fmax(out->kn, k.kn), out->kt = fmax(out->kt, k.kt), out->cn = fmax(out->cn, k.cn), out->ct = fmax(out->ct, k.ct);
-        any = true;
-    }
-    return any;
-}
-
-/// Contacts that are missing to the assumed coordination, spread evenly over directions.
-static void add_missing(const pls_world *world, uint32_t row, int coordination, body_rates *rates)
-{
-    int missing = coordination - rates->contacts;
-    pls_contact_stiffness k;
-    if (missing <= 0 || !typical_contact(world, row, &k)) return;
-    const pls_bodies *b = &world->bodies;
-    int d = world->def.dimension;
-    double radius = b->place[row].radius, weight = 2.0 * missing;
-    double per_mass = weight / (d * b->mass[row].mass),
-           per_inertia = weight * radius * radius / smallest_moment(&b->mass[row], d) * (d == 2 ? 1.0 : 2.0 / 3.0);
-    for (int a = 0; a < d; ++a)
-    {
-        rates->stiffness[7 * a] += per_mass * (k.kn + (d - 1) * k.kt);
-        rates->damping[7 * a] += per_mass * (k.cn + (d - 1) * k.ct);
-    }
-    for (int a = d == 2 ? 5 : 3; a < 6; ++a)
-    {
-        rates->stiffness[7 * a] += per_inertia * k.kt;
-        rates->damping[7 * a] += per_inertia * k.ct;
-    }
-    rates->contacts += missing;
 }
 
 /// A cheap bound of the largest eigenvalue, at most 1.5 % too large: the 64th root of the largest row sum of A^64 (Gershgorin), by six squarings, each of a
@@ -212,10 +102,10 @@ static double power_bound(const double *a)
     return bound;
 }
 
-static body_rates rates_of(const pls_world *world, uint32_t row, int coordination)
+static pls_body_rates rates_of(const pls_world *world, uint32_t row, int coordination)
 {
     const pls_pair_list *list = &world->list;
-    body_rates rates = {.contacts = 0};
+    pls_body_rates rates = {.contacts = 0};
     if (!world->memory_holds && list->count > 0)
     {
         for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k)
@@ -223,7 +113,7 @@ static body_rates rates_of(const pls_world *world, uint32_t row, int coordinatio
         for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
             add_from_list(world, row, list->walls.entry[k], &rates);
     }
-    add_missing(world, row, coordination, &rates);
+    pls_add_missing_contacts(world, row, coordination, &rates);
     return rates;
 }
 
@@ -236,7 +126,7 @@ static void estimate(const pls_world *world, int coordination, pls_step_estimate
     {
         uint32_t row = b->row_of[number];
         if (row == PLS_NO_ROW || b->load[row].inv_mass == 0.0) continue;
-        body_rates rates = rates_of(world, row, coordination);
+        pls_body_rates rates = rates_of(world, row, coordination);
         if (stable_dt(power_bound(rates.stiffness), power_bound(rates.damping)) >= best->dt) continue; // it cannot be the worst
         double stiffness = pls_largest_eigenvalue(rates.stiffness, 6), damping = pls_largest_eigenvalue(rates.damping, 6);
         double dt = stable_dt(stiffness, damping);
@@ -250,145 +140,14 @@ static void estimate(const pls_world *world, int coordination, pls_step_estimate
     }
 }
 
-// ---- the whole: power iteration -------------------------------------------------------------------------------------------------------------------------
-
-typedef struct whole
-{
-    joint *joint;
-    size_t joints;
-    double *missing
-        [2]; ///< per row: what contacts still to come add to translation and rotation, stiffness in [0], damping in [1]; two numbers each
-    double *root_mass, *root_inertia;
-    double *x, *y; ///< six numbers per row
-    size_t rows;
-} whole;
-
-static int contacts_of(const pls_pair_list *list, uint32_t row)
-{
-    int count = 0;
-    for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k)
-        count += pls_pair_touches(list, list->pairs.entry[k] >> 1);
-    for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
-        count += pls_pair_touches(list, list->walls.entry[k] >> 1);
-    return count;
-}
-
-static void whole_free(whole *w)
-{
-    pls_release(&w->joint);
-    pls_release(&w->missing[0]);
-    pls_release(&w->missing[1]);
-    pls_release(&w->root_mass);
-    pls_release(&w->root_inertia);
-    pls_release(&w->x);
-    pls_release(&w->y);
-}
-
-static pls_status whole_make(const pls_world *world, int coordination, whole *w)
-{
-    const pls_pair_list *list = &world->list;
-    const pls_bodies *b = &world->bodies;
-    w->rows = b->count;
-    PLS_TRY(pls_allocate(&w->joint, pls_pair_list_touching(list), sizeof *w->joint, "contacts of the stable step"));
-    PLS_TRY(pls_allocate(&w->missing[0], 2 * w->rows, sizeof(double), "the stable step"));
-    PLS_TRY(pls_allocate(&w->missing[1], 2 * w->rows, sizeof(double), "the stable step"));
-    PLS_TRY(pls_allocate(&w->root_mass, w->rows, sizeof(double), "the stable step"));
-    PLS_TRY(pls_allocate(&w->root_inertia, w->rows, sizeof(double), "the stable step"));
-    PLS_TRY(pls_allocate(&w->x, 6 * w->rows, sizeof(double), "the stable step"));
-    PLS_TRY(pls_allocate(&w->y, 6 * w->rows, sizeof(double), "the stable step"));
-    for (size_t c = 0; c < list->count; ++c)
-        if (pls_pair_touches(list, c)) w->joint[w->joints++] = joint_of(world, c);
-    for (uint32_t row = 0; row < w->rows; ++row)
-    {
-        if (b->load[row].inv_mass == 0.0) continue;
-        w->root_mass[row] = 1.0 / sqrt(b->mass[row].mass);
-        w->root_inertia[row] = 1.0 / sqrt(smallest_moment(&b->mass[row], world->def.dimension));
-        body_rates missing = {.contacts = contacts_of(list, row)};
-        add_missing(world, row, coordination, &missing);
-        w->missing[0][2 * row] = missing.stiffness[0];
-        w->missing[0][2 * row + 1] = missing.stiffness[35];
-        w->missing[1][2 * row] = missing.damping[0];
-        w->missing[1][2 * row + 1] = missing.damping[35];
-    }
-    return PLS_OK;
-}
-
-static pls_vec3 vec_at(const double *x) { return pls_vec(x[0], x[1], x[2]); }
-
-static void add_at(double *y, pls_vec3 a, double s) { y[0] += s * a.x, y[1] += s * a.y, y[2] += s * a.z; }
-
-/// y = M^-1/2 A M^-1/2 x, A the stiffness (damping = false) or the damping of all contacts.
-static void multiply_whole(const whole *w, bool damping, int dimension)
-{
-    const double *missing = w->missing[damping];
-    for (size_t row = 0; row < w->rows; ++row)
-        for (int a = 0; a < 6; ++a) w->y[6 * row + (size_t)a] = missing[2 * row + (a >= 3)] * w->x[6 * row + (size_t)a];
-    for (size_t m = 0; m < w->joints; ++m)
-    {
-        const joint *t = &w->joint[m];
-        double kn = damping ? t->k.cn : t->k.kn, kt = damping ? t->k.ct : t->k.kt;
-        const double *xi = w->x + 6 * (size_t)t->i, *xj = w->x + 6 * (size_t)t->j;
-        double mi = w->root_mass[t->i], ri = w->root_inertia[t->i] * t->lever_i, mj = w->root_mass[t->j],
-               rj = w->root_inertia[t->j] * t->lever_j;
-        pls_vec3 turn = pls_scale(vec_at(xi + 3), ri), u = pls_scale(vec_at(xi), mi);
-        if (!t->held)
-        {
-            turn = pls_add(turn, pls_scale(vec_at(xj + 3), rj));
-            u = pls_sub(u, pls_scale(vec_at(xj), mj));
-        }
-        u = pls_add(u, pls_cross(turn, t->n));
-        double un = pls_dot(u, t->n);
-        pls_vec3 f = pls_add(pls_scale(u, kt), pls_scale(t->n, (kn - kt) * un)), torque = pls_cross(t->n, f);
-        if (dimension == 2) f.z = torque.x = torque.y = 0.0;
-        add_at(w->y + 6 * (size_t)t->i, f, mi);
-        add_at(w->y + 6 * (size_t)t->i + 3, torque, ri);
-        if (t->held) continue;
-        add_at(w->y + 6 * (size_t)t->j, f, -mj);
-        add_at(w->y + 6 * (size_t)t->j + 3, torque, rj);
-    }
-}
-
-static double largest_of_whole(const whole *w, const pls_bodies *b, bool damping, int dimension)
-{
-    for (size_t row = 0; row < w->rows; ++row)
-    {
-        pls_random random = pls_random_stream(0, b->kind[row].number, PLS_FOR_USER);
-        for (int a = 0; a < 6; ++a)
-        {
-            bool moves = w->root_mass[row] > 0.0 && (dimension == 3 || a < 2 || a == 5);
-            w->x[6 * row + (size_t)a] = moves ? pls_random_uniform(&random) - 0.5 : 0.0;
-        }
-    }
-    double quotient = 0.0;
-    for (int k = 0; k < iterations; ++k)
-    {
-        double xx = 0.0, xy = 0.0, yy = 0.0;
-        multiply_whole(w, damping, dimension);
-        for (size_t m = 0; m < 6 * w->rows; ++m) xx += w->x[m] * w->x[m], xy += w->x[m] * w->y[m], yy += w->y[m] * w->y[m];
-        if (!(yy > 0.0)) return 0.0;
-        double before = quotient;
-        quotient = xy / xx;
-        if (k >= least_iterations && quotient - before < slow_growth * quotient) break;
-        double scale = 1.0 / sqrt(yy);
-        for (size_t m = 0; m < 6 * w->rows; ++m) w->x[m] = scale * w->y[m];
-    }
-    return quotient_margin * quotient;
-}
-
 /// Judge a step that fails the bound by the eigenvalues of the whole.
 static pls_status refine(const pls_world *world, int coordination, pls_step_estimate *e)
 {
-    whole w = {0};
-    pls_status status = whole_make(world, coordination, &w);
-    if (status == PLS_OK)
-    {
-        double stiffness = largest_of_whole(&w, &world->bodies, false, world->def.dimension),
-               damping = largest_of_whole(&w, &world->bodies, true, world->def.dimension);
-        double dt = stable_dt(stiffness, damping);
-        if (dt > e->dt) e->dt = dt, e->stiffness = stiffness, e->damping = damping, e->damping_limits = damping > sqrt(stiffness);
-    }
-    whole_free(&w);
-    return status;
+    double stiffness, damping;
+    PLS_TRY(pls_whole_rates(world, coordination, &stiffness, &damping));
+    double dt = stable_dt(stiffness, damping);
+    if (dt > e->dt) e->dt = dt, e->stiffness = stiffness, e->damping = damping, e->damping_limits = damping > sqrt(stiffness);
+    return PLS_OK;
 }
 
 /// Which candidates touch is known after the contact loop only; before it, take those that touch or nearly do (in a regular packing round-off decides which of

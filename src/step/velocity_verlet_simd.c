@@ -12,6 +12,8 @@
 
 #include "step/velocity_verlet.h"
 
+enum { SLOTS_AHEAD = 16 }; ///< rows whose slots are fetched ahead, a multiple of PLS_W
+
 static const pls_v4i three = {-1, -1, -1, 0}; ///< mask of the first three
 
 // ---- a vector of bodies ---------------------------------------------------------------------------------------------------------------------------------
@@ -221,6 +223,16 @@ static inline __attribute__((always_inline)) pls_row gather_pairs(pls_pair_list 
     return sum;
 }
 
+/// Fetch into the cache the slots a row will gather: some were written long ago, when the sweep passed its partners' rows.
+static inline void fetch_slots(const pls_pair_list *list, size_t row)
+{
+    const uint32_t *head = pls_near_row(list, row), *entry = head + PLS_NEAR_HEAD;
+    if (head[0] == PLS_NEAR_STALE) return;
+    for (const uint32_t *end = entry + head[0] + head[1]; entry < end; entry += PLS_NEAR_QUAD)
+#pragma GCC unroll 4
+        for (int k = 0; k < PLS_NEAR_QUAD; ++k) __builtin_prefetch(list->slot + (size_t)entry[k] * PLS_SLOT);
+}
+
 static inline void gather_walls(const pls_pair_list *list, size_t row, pls_row *sum)
 {
     for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
@@ -269,6 +281,7 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t k = row_of(&g, lane);
+            if (row + SLOTS_AHEAD + PLS_W <= last) fetch_slots(list, row + SLOTS_AHEAD + (size_t)lane);
             sum[lane] = gather_pairs(list, k, skewed);
             gather_walls(list, k, &sum[lane]);
             if (force)

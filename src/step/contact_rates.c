@@ -1,0 +1,92 @@
+// contact_rates.c -- contacts as the stable step sees them.
+
+#include "step/contact_rates.h"
+
+static const double typical_overlap =
+    0.01; ///< of the radius: where a law whose stiffness vanishes at zero overlap is asked before grains touch
+
+double pls_smallest_moment(const pls_body_mass *m, int dimension) { return dimension == 2 ? m->iz : fmin(m->ix, fmin(m->iy, m->iz)); }
+
+pls_joint pls_joint_of(const pls_world *world, size_t c)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_bodies *b = &world->bodies;
+    const pls_pair_section *section = list->section;
+    while (c < section->first || c >= section->first + section->count) ++section;
+    pls_joint t = {.i = list->row_i[c], .j = list->row_j[c]};
+    const pls_body_place *p = &b->place[t.i], *q = &b->place[t.j];
+    double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius;
+    if (section->wall)
+    {
+        t.n = pls_scale(pls_wall_normal(&b->orientation[t.j], world->def.dimension), -1.0);
+        delta = p->radius - (t.n.x * d[0] + t.n.y * d[1] + t.n.z * d[2]);
+        radius = p->radius;
+    }
+    else
+    {
+        for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
+        double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        t.n = pls_vec(d[0] / distance, d[1] / distance, d[2] / distance);
+        delta = p->radius + q->radius - distance;
+        radius = p->radius * q->radius / (p->radius + q->radius);
+        t.lever_j = q->radius - 0.5 * delta;
+    }
+    t.lever_i = p->radius - 0.5 * delta;
+    t.held = section->wall || b->load[t.j].inv_mass == 0.0;
+    const pls_law *law = &world->laws.law[section->law];
+    const double zeros[PLS_LAW_MAX_HISTORY] = {0};
+    pls_contact_point point = {.delta = fmax(delta, 0.0),
+                               .effective_radius = radius,
+                               .effective_mass = 1.0 / (b->load[t.i].inv_mass + b->load[t.j].inv_mass),
+                               .history = zeros};
+    law->ops->stiffness(law->constants, &point, &t.k);
+    return t;
+}
+
+/// The stiffest contact a body's material can have with its like or another.
+static bool typical_contact(const pls_world *world, uint32_t row, pls_contact_stiffness *out)
+{
+    const pls_bodies *b = &world->bodies;
+    bool any = false;
+    *out = (pls_contact_stiffness){0};
+    double radius = b->place[row].radius;
+    for (size_t m = 0; m < world->laws.material_count; ++m)
+    {
+        uint16_t index = pls_law_table_find(&world->laws, b->kind[row].material, (uint16_t)m);
+        if (index == PLS_NO_LAW) continue;
+        const pls_law *law = &world->laws.law[index];
+        const double zeros[PLS_LAW_MAX_HISTORY] = {0};
+        pls_contact_point point = {.delta = typical_overlap * radius,
+                                   .effective_radius = 0.5 * radius,
+                                   .effective_mass = 0.5 * b->mass[row].mass,
+                                   .history = zeros};
+        pls_contact_stiffness k;
+        law->ops->stiffness(law->constants, &point, &k);
+        out->kn = fmax(out->kn, k.kn), out->kt = fmax(out->kt, k.kt), out->cn = fmax(out->cn, k.cn), out->ct = fmax(out->ct, k.ct);
+        any = true;
+    }
+    return any;
+}
+
+void pls_add_missing_contacts(const pls_world *world, uint32_t row, int coordination, pls_body_rates *rates)
+{
+    int missing = coordination - rates->contacts;
+    pls_contact_stiffness k;
+    if (missing <= 0 || !typical_contact(world, row, &k)) return;
+    const pls_bodies *b = &world->bodies;
+    int d = world->def.dimension;
+    double radius = b->place[row].radius, weight = 2.0 * missing;
+    double per_mass = weight / (d * b->mass[row].mass),
+           per_inertia = weight * radius * radius / pls_smallest_moment(&b->mass[row], d) * (d == 2 ? 1.0 : 2.0 / 3.0);
+    for (int a = 0; a < d; ++a)
+    {
+        rates->stiffness[7 * a] += per_mass * (k.kn + (d - 1) * k.kt);
+        rates->damping[7 * a] += per_mass * (k.cn + (d - 1) * k.ct);
+    }
+    for (int a = d == 2 ? 5 : 3; a < 6; ++a)
+    {
+        rates->stiffness[7 * a] += per_inertia * k.kt;
+        rates->damping[7 * a] += per_inertia * k.ct;
+    }
+    rates->contacts += missing;
+}
