@@ -20,11 +20,11 @@ enum {
     PLS_LARGE_WORLD = 4000,            ///< bodies from which rows overflow the near caches, so that fetching ahead pays
     PLS_VAST_WORLD = 30000,            ///< bodies from which they overflow the last cache too
     PLS_ROW_GROUP = 8,                 ///< rows that are finished together
-    PLS_SLOT = 8,       ///< doubles in the slot of a sphere pair: F on i (3), power of its dashpots, torque (3), work of its slider
-    PLS_WALL_SLOT = 16, ///< doubles in the slot of a wall pair: the same for i, then for the wall
-    PLS_NEAR_HEAD = 2,  ///< numbers before the near entries of a row: how many of partners with lower numbers, of higher ones
-    PLS_NEAR_QUAD = 4,  ///< near entries come in multiples of this, so that the loop over them has few turns, mostly equally many
-    PLS_NEAR_SPARE = PLS_NEAR_HEAD + 2 * (PLS_NEAR_QUAD - 1) ///< room a near row needs besides its entries
+    PLS_SLOT = 8,        ///< doubles in the slot of a sphere pair: F on i (3), power of its dashpots, torque (3), work of its slider
+    PLS_WALL_SLOT = 16,  ///< doubles in the slot of a wall pair: the same for i, then for the wall
+    PLS_NEAR_HEAD = 2,   ///< numbers before the near entries of a row: how many of partners with lower numbers, of higher ones
+    PLS_NEAR_STRIDE = 3, ///< near entries come in multiples of this, so that the loop over them has few turns, mostly equally many
+    PLS_NEAR_SPARE = PLS_NEAR_HEAD + 2 * (PLS_NEAR_STRIDE - 1) ///< room a near row needs besides its entries
 };
 /// In the head of a near row: contacts of the row began or ended since it was listed.
 #define PLS_NEAR_STALE UINT32_MAX

@@ -33,7 +33,7 @@
 
 enum {
     FETCH_AHEAD = 48, ///< candidates of sparse blocks and walls; within PLS_PAIR_REACH
-    WHOLE_FROM = 6,   ///< sixteenths of a block that must have touched at the last step for whole vectors to be quicker
+    WHOLE_FROM = 4,   ///< sixteenths of a block that must have touched at the last step for whole vectors to be quicker
 };
 
 static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}); }
@@ -209,7 +209,7 @@ static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list
     {
         pls_row place[PLS_W], sum[PLS_W], skew[PLS_W];
         pls_vd growth = pls_vd_set(0.0);
-        if (whole) fetch_slots(list, section, block->first + k, 1);
+        if (whole && (in->vast || !in->large)) fetch_slots(list, section, block->first + k, 1);
 #pragma GCC unroll 8
         for (int lane = 0; lane < PLS_W; ++lane)
         {
@@ -322,7 +322,7 @@ static inline void begin_springs(const pls_contact_work *work, size_t k, double 
 {
     pls_vd delta = pls_vd_load(&work->delta[k]), approach = pls_vd_load(&work->normal_velocity[k]) * dt; // of the whole step
     pls_vd since = pls_vd_pick((pls_vi)(approach > delta), delta / approach, pls_vd_set(1.0));
-    for (int a = 0; a < 3; ++a) spring[a] = pls_vd_choose(fresh, since * step[a], spring[a]);
+    for (int a = 0; a < 3; ++a) spring[a] = pls_vd_choose(pls_vm_of(fresh), since * step[a], spring[a]);
 }
 
 static inline unsigned fresh_lanes(const pls_contact_work *work, size_t k)
@@ -391,7 +391,7 @@ static inline __attribute__((always_inline)) void answer_linear(const pls_pair_l
     {
         const size_t c = block->first + k;
         if (in->large) fetch_slots(list, section, c + PLS_CONTACT_BLOCK, 0);
-        const unsigned touching = (unsigned)(list->touch[c >> 3] >> (c & 7));
+        const pls_vm touching = pls_vm_of((unsigned)(list->touch[c >> 3] >> (c & 7)));
         double *stored = history + k / 8 * 8 * (size_t)section->numbers + k % 8;
         pls_vd v[3], spring[3];
         for (int a = 0; a < 3; ++a)

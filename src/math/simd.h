@@ -102,17 +102,46 @@ static inline pls_vd pls_vd_max(pls_vd a, pls_vd b)
 #endif
 }
 
-/// Bit k of `bits` ? lane k of a : lane k of b.
-static inline pls_vd pls_vd_choose(unsigned bits, pls_vd a, pls_vd b)
+/// Which lanes: bits of a mask register, or lanes all ones or all zeros.
+#if defined(__AVX512F__)
+typedef __mmask8 pls_vm;
+#else
+typedef pls_vi pls_vm;
+#endif
+
+/// Lanes where a is smaller than b.
+static inline pls_vm pls_vm_below(pls_vd a, pls_vd b)
 {
 #if defined(__AVX512F__)
-    return (pls_vd)_mm512_mask_blend_pd((__mmask8)bits, (__m512d)b, (__m512d)a);
+    return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ);
+#else
+    return (pls_vm)(a < b);
+#endif
+}
+
+/// Lane k where bit k is set.
+static inline pls_vm pls_vm_of(unsigned bits)
+{
+#if defined(__AVX512F__)
+    return (pls_vm)bits;
 #elif PLS_W == 4
     const pls_vi lane = {1, 2, 4, 8};
-    return pls_vd_pick((pls_vi)((((pls_vi){0} + (int64_t)bits) & lane) == lane), a, b);
+    return (pls_vm)((((pls_vi){0} + (int64_t)bits) & lane) == lane);
 #else
     const pls_vi lane = {1, 2};
-    return pls_vd_pick((pls_vi)((((pls_vi){0} + (int64_t)bits) & lane) == lane), a, b);
+    return (pls_vm)((((pls_vi){0} + (int64_t)bits) & lane) == lane);
+#endif
+}
+
+/// a in the lanes of m, b in the others.
+static inline pls_vd pls_vd_choose(pls_vm m, pls_vd a, pls_vd b)
+{
+#if defined(__AVX512F__)
+    return (pls_vd)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
+#elif defined(__AVX2__)
+    return (pls_vd)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)m);
+#else
+    return pls_vd_pick(m, a, b);
 #endif
 }
 

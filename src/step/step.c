@@ -85,6 +85,7 @@ typedef struct sweep
 /// The part of one thread: blocks of pairs, and the groups of rows that begin with them.
 typedef struct share
 {
+    int thread;
     size_t first_block, last_block, first_group, last_group;
     size_t reached; ///< groups before this one were looked at while their forces were fresh
     pls_drift_report report;
@@ -102,7 +103,8 @@ static share share_of(const pls_world *world, int thread, int threads)
     size_t groups = pls_block_count(world->bodies.count, PLS_ROW_GROUP), pairs = list->block_count - list->wall_blocks;
     size_t first = list->wall_blocks + pairs * (size_t)thread / (size_t)threads;
     size_t last = list->wall_blocks + pairs * ((size_t)thread + 1) / (size_t)threads;
-    return (share){.first_block = first,
+    return (share){.thread = thread,
+                   .first_block = first,
                    .last_block = last,
                    .first_group = thread == 0 ? 0 : group_of_block(list, first, groups),
                    .last_group = thread == threads - 1 ? groups : group_of_block(list, last, groups)};
@@ -112,9 +114,8 @@ static void work_block(sweep *s, share *mine, size_t b)
 {
     pls_world *world = s->world;
     const pls_pair_block *block = &world->list.block[b];
-    int thread = omp_get_thread_num();
-    PLS_SIMD_SELECT(pls_contact_block)(&world->list, &s->input, block, &world->work[thread]);
-    if (s->input.dt > 0.0 && mine->status == PLS_OK) mine->status = pls_find_parted(world, block, &world->parted[thread]);
+    PLS_SIMD_SELECT(pls_contact_block)(&world->list, &s->input, block, &world->work[mine->thread]);
+    if (s->input.dt > 0.0 && mine->status == PLS_OK) mine->status = pls_find_parted(world, block, &world->parted[mine->thread]);
 }
 
 static void finish_groups(sweep *s, share *mine, size_t first, size_t last)

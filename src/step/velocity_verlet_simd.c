@@ -120,7 +120,7 @@ static inline __attribute__((always_inline)) void turn(const group *g, const pls
     pls_vd e = (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]) - 1.0;
     pls_vd scale = 1.0 - e * (0.5 - e * (0.375 - e * 0.3125));
     unsigned small = pls_vd_less(e, little) & pls_vd_less(-little, e);
-    if (small != (1u << PLS_W) - 1) scale = pls_vd_choose(small, scale, 1.0 / pls_vd_sqrt(1.0 + e));
+    if (small != (1u << PLS_W) - 1) scale = pls_vd_choose(pls_vm_of(small), scale, 1.0 / pls_vd_sqrt(1.0 + e));
     for (int c = 0; c < 4; ++c) q[c] = scale * q[c];
     pls_rows4(q, out, g->count);
 }
@@ -187,7 +187,7 @@ static __attribute__((noinline)) void list_touching(pls_pair_list *list, size_t 
     {
         for (uint32_t k = first; k < last; ++k)
             if ((entry[k] & 1) == side && pls_pair_touches(list, entry[k] >> 1)) *to++ = entry[k] >> 1;
-        while ((to - from) % PLS_NEAR_QUAD != 0) *to++ = (uint32_t)pls_zero_slot(list);
+        while ((to - from) % PLS_NEAR_STRIDE != 0) *to++ = (uint32_t)pls_zero_slot(list);
         head[1 - side] = (uint32_t)(to - from);
     }
 }
@@ -211,14 +211,14 @@ static inline __attribute__((always_inline)) pls_row gather_pairs(pls_pair_list 
     if (head[0] == PLS_NEAR_STALE) list_touching(list, row);
     pls_row sum = pls_row_join(pls_v4_set(0.0), pls_v4_set(0.0));
     const uint32_t *end = entry + head[0];
-    for (; entry < end; entry += PLS_NEAR_QUAD)
-#pragma GCC unroll 4
-        for (int k = 0; k < PLS_NEAR_QUAD; ++k)
+    for (; entry < end; entry += PLS_NEAR_STRIDE)
+#pragma GCC unroll 3
+        for (int k = 0; k < PLS_NEAR_STRIDE; ++k)
             sum = pls_row_add(sum, skewed ? skewed_slot_of(list, entry[k], -1.0) : slot_of(list, entry[k]));
     sum = pls_row_flip(sum, (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}, (pls_v4i){0, 0, 0, 0});
-    for (end += head[1]; entry < end; entry += PLS_NEAR_QUAD)
-#pragma GCC unroll 4
-        for (int k = 0; k < PLS_NEAR_QUAD; ++k)
+    for (end += head[1]; entry < end; entry += PLS_NEAR_STRIDE)
+#pragma GCC unroll 3
+        for (int k = 0; k < PLS_NEAR_STRIDE; ++k)
             sum = pls_row_add(sum, skewed ? skewed_slot_of(list, entry[k], 1.0) : slot_of(list, entry[k]));
     return sum;
 }
@@ -228,9 +228,9 @@ static inline void fetch_slots(const pls_pair_list *list, size_t row)
 {
     const uint32_t *head = pls_near_row(list, row), *entry = head + PLS_NEAR_HEAD;
     if (head[0] == PLS_NEAR_STALE) return;
-    for (const uint32_t *end = entry + head[0] + head[1]; entry < end; entry += PLS_NEAR_QUAD)
-#pragma GCC unroll 4
-        for (int k = 0; k < PLS_NEAR_QUAD; ++k) __builtin_prefetch(list->slot + (size_t)entry[k] * PLS_SLOT);
+    for (const uint32_t *end = entry + head[0] + head[1]; entry < end; entry += PLS_NEAR_STRIDE)
+#pragma GCC unroll 3
+        for (int k = 0; k < PLS_NEAR_STRIDE; ++k) __builtin_prefetch(list->slot + (size_t)entry[k] * PLS_SLOT);
 }
 
 static inline void gather_walls(const pls_pair_list *list, size_t row, pls_row *sum)
