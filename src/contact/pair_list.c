@@ -15,10 +15,11 @@
 
 #include <string.h>
 
-/// Room for `needed` items whose old contents may go. Lists change little from one to the next, so a sixteenth to spare is enough.
+/// Room for `needed` items whose old contents may go. Lists change little from one to the next, so a sixteenth to spare is enough; what a list of a larger skin
+/// needed is given back.
 static pls_status renew(void *block, size_t *capacity, size_t needed, size_t size, const char *what)
 {
-    if (needed <= *capacity) return PLS_OK;
+    if (needed <= *capacity && *capacity - needed <= needed / 4 + 64) return PLS_OK;
     pls_release(block);
     *capacity = 0;
     PLS_TRY(pls_allocate(block, needed + needed / 16, size, what));

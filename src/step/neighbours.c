@@ -14,7 +14,10 @@ static const double least_skin = 0.02;  ///< of the mean radius
 static const double most_skin = 1.5;    ///< of the mean radius
 static const double first_change = 1.5; ///< first factor tried; it shrinks towards `last_change`
 static const double last_change = 1.05;
-static const double window_seconds = 0.3;    ///< wall time measured at least before the skin is changed: whole lives of lists
+static const double worth = 0.01;            ///< of the time per step: what a larger skin has to gain
+static const double window_seconds = 0.3;    ///< wall time measured at least before the skin is changed
+static const double long_seconds = 3.0;      ///< wall time after which one list is enough
+static const int builds_per_window = 4;      ///< lists otherwise
 static const uint64_t builds_per_order = 24; ///< rebuilds between looks at the memory order
 
 static double mean_radius(const pls_world *world)
@@ -30,7 +33,7 @@ static double mean_radius(const pls_world *world)
     return count ? sum / (double)count : 1.0;
 }
 
-/// Hill climbing on wall time per step: go on while it falls, turn and take smaller steps when it rises.
+/// Hill climbing on wall time per step: go on while it falls, turn and take smaller steps when it rises. A larger skin, which costs memory, has to earn it.
 static void tune_skin(pls_world *world)
 {
     pls_skin_tuner *tuner = &world->tuner;
@@ -47,9 +50,9 @@ static void tune_skin(pls_world *world)
         return;
     }
     double elapsed = now - tuner->since;
-    if (elapsed < window_seconds) return;
+    if (++tuner->builds < builds_per_window ? elapsed < long_seconds : elapsed < window_seconds) return;
     double cost = elapsed / (double)(world->step - tuner->steps + 1);
-    if (cost > tuner->last_cost)
+    if (cost > tuner->last_cost * (tuner->factor > 1.0 ? 1.0 - worth : 1.0 + worth))
     {
         double smaller = fmax(sqrt(fmax(tuner->factor, 1.0 / tuner->factor)), last_change);
         tuner->factor = tuner->factor > 1.0 ? 1.0 / smaller : smaller;
@@ -58,6 +61,7 @@ static void tune_skin(pls_world *world)
     tuner->skin = fmin(fmax(tuner->skin * tuner->factor, least_skin * mean), most_skin * mean);
     tuner->since = now;
     tuner->steps = world->step;
+    tuner->builds = 0;
 }
 
 /// Keep the skin within what periodic edges leave beside two largest diameters (broad_phase.c). A given skin is shortened too, as no skin changes a result and

@@ -64,6 +64,7 @@ typedef struct pls_skin_tuner
     double last_cost; ///< wall time per step with the last value [s]
     double since;     ///< clock at the start of the window [s]
     uint64_t steps;   ///< in the window
+    int builds;       ///< in the window
 } pls_skin_tuner;
 
 /// A contact that ended in this step, and the energy it still held [J].
