@@ -15,11 +15,11 @@
 #include "model/domain.h"
 
 enum {
-    PLS_CONTACT_BLOCK = PLS_LAW_BATCH, ///< candidates per block of work: its arrays stay in the first-level cache
-    PLS_PAIR_REACH = 192,              ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
-    PLS_LARGE_WORLD = 4000,            ///< bodies from which rows overflow the near caches, so that fetching ahead pays
-    PLS_VAST_WORLD = 30000,            ///< bodies from which they overflow the last cache too
-    PLS_ROW_GROUP = 8,                 ///< rows that are finished together
+    PLS_CONTACT_BLOCK = PLS_LAW_BATCH,       ///< candidates per block of work: its arrays stay in the first-level cache
+    PLS_PAIR_REACH = PLS_CONTACT_BLOCK + 64, ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
+    PLS_LARGE_WORLD = 4000,                  ///< bodies from which rows overflow the near caches, so that fetching ahead pays
+    PLS_VAST_WORLD = 30000,                  ///< bodies from which they overflow the last cache too
+    PLS_ROW_GROUP = 8,                       ///< rows that are finished together
     PLS_SLOT = 8,        ///< doubles in the slot of a sphere pair: F on i (3), power of its dashpots, torque (3), work of its slider
     PLS_WALL_SLOT = 16,  ///< doubles in the slot of a wall pair: the same for i, then for the wall
     PLS_NEAR_HEAD = 2,   ///< numbers before the near entries of a row: how many of partners with lower numbers, of higher ones

@@ -1,6 +1,6 @@
 // sphere_contact_simd.c -- the hot loop: one block of candidates at a time, as short loops over arrays that stay in the first-level cache.
 //
-// Two ways to the same bits. Where most candidates of a block touch and the law is linear, whole vectors of the list are worked on:
+// Two ways to the same bits. Where at least a quarter of a block touched at the last step and the law is linear, whole vectors of the list are worked on:
 //
 //     load     rows of both bodies to columns over candidates; normal, overlap, and which touch
 //     answer   relative velocities at the contact point, the spring carried into the contact frame of now, the law, force and torque into the
@@ -162,8 +162,9 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
 
 // ---- load -------------------------------------------------------------------------------------------------------------------------------------------------
 
-// What a block of whole vectors needs is fetched into the cache by the block before it, a little in each turn of its longest loops, so that the memory works while
-// the processor computes. Asked for at once, when a block is loaded, the same lines keep the loads of that loop waiting: 18 % of a step at 300,000 bodies.
+// What a block of whole vectors needs is fetched into the cache by the block before it in the list, a little in each turn of its longest loops, so that the memory works while
+// the processor computes. Asked for at once, when a block is loaded, the same lines keep the loads of that loop waiting: 18 % of a step at 300,000 bodies. (Springs and slots are asked for there too, to be written: in small worlds, where nobody
+// fetched them before, and in vast ones, where some have gone again.)
 
 /// Springs and slots of candidates c .. ; `now`: they are about to be written.
 static inline __attribute__((always_inline)) void fetch_slots(const pls_pair_list *list, const pls_pair_section *section, size_t c, int now)
@@ -740,8 +741,8 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
     store_pairs(list, in, block, work, 1, plain);
 }
 
-/// Do so many of the block's candidates touch that picking them does not pay?
-static bool mostly_touching(const pls_pair_list *list, const pls_pair_block *block)
+/// Did so many of the block's candidates touch at the last step that picking them does not pay?
+static bool whole_pays(const pls_pair_list *list, const pls_pair_block *block)
 {
     size_t touching = 0;
     for (size_t c = block->first; c < block->first + block->count; c += 8) touching += (size_t)__builtin_popcount(list->touch[c >> 3]);
@@ -752,7 +753,7 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
 {
     const pls_pair_section *section = &list->section[block->section];
     const pls_law_ops *ops = in->laws->law[section->law].ops;
-    if (section->wall || ops->evaluate != pls_linear_evaluate || !mostly_touching(list, block))
+    if (section->wall || ops->evaluate != pls_linear_evaluate || !whole_pays(list, block))
         work_picked(list, in, section, block, work);
     else if (in->domain->any_periodic || in->growing || !list->equal_radii)
         work_whole(list, in, section, block, work, 0);

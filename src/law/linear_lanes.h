@@ -48,7 +48,7 @@ static inline __attribute__((always_inline)) void pls_linear_answer(const pls_li
     }
     pls_vd cone = law->mu * pls_vd_max(fn, -fn);
     pls_vd shear = pls_vd_sqrt(trial[0] * trial[0] + trial[1] * trial[1] + trial[2] * trial[2]);
-    const pls_vm slides = pls_vm_below(cone, shear);
+    const pls_vm slides = pls_vm_less(cone, shear);
     pls_vd factor = -(cone / pls_vd_max(pls_vd_max(shear, cone), tiny)); // exactly -1 where nothing slides
     pls_vd work = pls_vd_set(0.0), power = (fn - spring_force) * vn;
     for (int a = 0; a < 3; ++a)

@@ -6,7 +6,6 @@
 #include "base/alloc.h"
 #include "base/parallel.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -29,7 +28,7 @@ static double largest_of_tridiagonal(const double *diagonal, const double *besid
         double reach = (k > 0 ? fabs(beside[k - 1]) : 0.0) + (k + 1 < n ? fabs(beside[k]) : 0.0); // Gershgorin
         low = fmax(low, diagonal[k]), high = fmax(high, diagonal[k] + reach);
     }
-    while (high - low > 1e-10 * high)
+    for (int halving = 0; halving < 100 && high - low > 1e-10 * fabs(high); ++halving)
     {
         double middle = 0.5 * (low + high);
         if (bounded_by(diagonal, beside, n, middle))
@@ -40,7 +39,7 @@ static double largest_of_tridiagonal(const double *diagonal, const double *besid
     return high;
 }
 
-/// The same sum on any number of threads: by blocks, the blocks in order.
+/// By blocks, for accuracy.
 static double product(const double *x, const double *y, size_t count)
 {
     double total = 0.0;
@@ -83,11 +82,11 @@ pls_status pls_lanczos_largest(pls_operator *multiply, const void *context, size
         beside[k] = sqrt(product(next, next, count));
         double last = *out;
         *out = isfinite(diagonal[k]) && isfinite(beside[k]) ? largest_of_tridiagonal(diagonal, beside, k + 1) : NAN;
-        bool settled = k + 1 >= LEAST && *out - last < slow_growth * *out;
-        if (!(beside[k] > 1e-12 * *out) || settled) break; // also: an invariant subspace is exhausted, or NaN
+        bool settled = k + 1 >= LEAST && *out - last < slow_growth * fabs(*out);
+        if (!(beside[k] > 1e-12 * fabs(*out)) || settled) break; // also: an invariant subspace is exhausted, or NaN
         scale(next, 1.0 / beside[k], count);
-        double *free = before;
-        before = now, now = next, next = free;
+        double *spare = before;
+        before = now, now = next, next = spare;
     }
     pls_release(&mine[0]);
     pls_release(&mine[1]);

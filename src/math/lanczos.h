@@ -8,8 +8,7 @@
 /// y = A x, both of `count` numbers.
 typedef void pls_operator(const void *context, const double *x, double *y);
 
-/// Largest eigenvalue of a positive semidefinite operator, from below: some thousandths too small, as a rule (it stops when an iteration adds less than 5e-4
-/// of it, or after 60). `start` (overwritten) should have a part in every direction; 0 where start or operator are 0, NaN where the operator is not finite.
+/// Largest eigenvalue, from below: some thousandths too small, as a rule (it stops when an iteration adds less than 5e-4 of it, or after 60). `start` (overwritten) should have a part in every direction; 0 where start or operator are 0, NaN where the operator is not finite.
 pls_status pls_lanczos_largest(pls_operator *multiply, const void *context, size_t count, double *start, double *out);
 
 #endif

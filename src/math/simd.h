@@ -110,7 +110,7 @@ typedef pls_vi pls_vm;
 #endif
 
 /// Lanes where a is smaller than b.
-static inline pls_vm pls_vm_below(pls_vd a, pls_vd b)
+static inline pls_vm pls_vm_less(pls_vd a, pls_vd b)
 {
 #if defined(__AVX512F__)
     return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ);

@@ -7,13 +7,13 @@ static const double typical_overlap =
 
 double pls_smallest_moment(const pls_body_mass *m, int dimension) { return dimension == 2 ? m->iz : fmin(m->ix, fmin(m->iy, m->iz)); }
 
-pls_joint pls_joint_of(const pls_world *world, size_t c)
+pls_contact_rate pls_contact_rate_of(const pls_world *world, size_t c)
 {
     const pls_pair_list *list = &world->list;
     const pls_bodies *b = &world->bodies;
     const pls_pair_section *section = list->section;
     while (c < section->first || c >= section->first + section->count) ++section;
-    pls_joint t = {.i = list->row_i[c], .j = list->row_j[c]};
+    pls_contact_rate t = {.i = list->row_i[c], .j = list->row_j[c]};
     const pls_body_place *p = &b->place[t.i], *q = &b->place[t.j];
     double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius;
     if (section->wall)

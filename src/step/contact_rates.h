@@ -5,14 +5,14 @@
 #include "step/world.h"
 
 /// A contact as the estimate sees it.
-typedef struct pls_joint
+typedef struct pls_contact_rate
 {
     uint32_t i, j;           ///< rows
     bool held;               ///< no force moves j
     pls_vec3 n;              ///< from i to j
     double lever_i, lever_j; ///< contact point from the centres [m]
     pls_contact_stiffness k;
-} pls_joint;
+} pls_contact_rate;
 
 /// What contacts add to one body: M^-1/2 A M^-1/2 for stiffness [1/s^2] and damping [1/s], six by six.
 typedef struct pls_body_rates
@@ -21,7 +21,7 @@ typedef struct pls_body_rates
     int contacts;
 } pls_body_rates;
 
-pls_joint pls_joint_of(const pls_world *world, size_t candidate);
+pls_contact_rate pls_contact_rate_of(const pls_world *world, size_t candidate);
 
 /// The moment of inertia that resists least [kg m^2].
 double pls_smallest_moment(const pls_body_mass *mass, int dimension);

@@ -14,7 +14,7 @@ static const double least_skin = 0.02;  ///< of the mean radius
 static const double most_skin = 1.5;    ///< of the mean radius
 static const double first_change = 1.5; ///< first factor tried; it shrinks towards `last_change`
 static const double last_change = 1.05;
-static const double worth = 0.01;            ///< of the time per step: what a larger skin has to gain
+static const double worth = 0.025; ///< what a larger skin has to gain, of the time per step, and a smaller one may lose, per factor e
 static const double window_seconds = 0.3;    ///< wall time measured at least before the skin is changed
 static const double long_seconds = 3.0;      ///< wall time after which one list is enough
 static const int builds_per_window = 4;      ///< lists otherwise
@@ -33,7 +33,7 @@ static double mean_radius(const pls_world *world)
     return count ? sum / (double)count : 1.0;
 }
 
-/// Hill climbing on wall time per step: go on while it falls, turn and take smaller steps when it rises. A larger skin, which costs memory, has to earn it.
+/// Hill climbing on wall time per step: go on while it falls, turn and take smaller steps when it rises. A larger skin costs memory and has to earn it.
 static void tune_skin(pls_world *world)
 {
     pls_skin_tuner *tuner = &world->tuner;
@@ -52,7 +52,7 @@ static void tune_skin(pls_world *world)
     double elapsed = now - tuner->since;
     if (++tuner->builds < builds_per_window ? elapsed < long_seconds : elapsed < window_seconds) return;
     double cost = elapsed / (double)(world->step - tuner->steps + 1);
-    if (cost > tuner->last_cost * (tuner->factor > 1.0 ? 1.0 - worth : 1.0 + worth))
+    if (cost > tuner->last_cost * (1.0 - worth * log(tuner->factor)))
     {
         double smaller = fmax(sqrt(fmax(tuner->factor, 1.0 / tuner->factor)), last_change);
         tuner->factor = tuner->factor > 1.0 ? 1.0 / smaller : smaller;

@@ -56,7 +56,7 @@ static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, 
 {
     if (!pls_pair_touches(&world->list, entry >> 1)) return;
     const pls_bodies *b = &world->bodies;
-    pls_joint t = pls_joint_of(world, entry >> 1);
+    pls_contact_rate t = pls_contact_rate_of(world, entry >> 1);
     uint32_t other = row == t.i ? t.j : t.i;
     double m = b->mass[row].mass;
     double ratio = b->load[other].inv_mass > 0.0 ? fmin(fmax(m / b->mass[other].mass, 1.0 / 3.0), 3.0) : 0.0;
@@ -145,6 +145,7 @@ static pls_status refine(const pls_world *world, int coordination, pls_step_esti
 {
     double stiffness, damping;
     PLS_TRY(pls_whole_rates(world, coordination, &stiffness, &damping));
+    if (!isfinite(stiffness) || !isfinite(damping)) return PLS_OK; // the bound stays
     double dt = stable_dt(stiffness, damping);
     if (dt > e->dt) e->dt = dt, e->stiffness = stiffness, e->damping = damping, e->damping_limits = damping > sqrt(stiffness);
     return PLS_OK;

@@ -12,7 +12,7 @@
 
 #include "step/velocity_verlet.h"
 
-enum { SLOTS_AHEAD = 16 }; ///< rows whose slots are fetched ahead, a multiple of PLS_W
+enum { SLOTS_AHEAD = 16 }; ///< how many rows ahead the slots of a row are fetched
 
 static const pls_v4i three = {-1, -1, -1, 0}; ///< mask of the first three
 

@@ -11,48 +11,46 @@
 static const double margin = 1.03; ///< Lanczos values come from below
 
 /// Stiffness in [0], damping in [1].
-typedef struct rod
+typedef struct packed_contact
 {
     uint32_t i, j;
     float n[3];
     float lever_i, lever_j; ///< times the roots of inverse moments
     float root_i, root_j;   ///< roots of inverse masses, 0 where no force moves it
     float normal[2], tangential[2];
-} rod;
+} packed_contact;
 
 typedef struct whole
 {
-    rod *rod;
-    size_t rods, rows;
+    packed_contact *packed;
+    size_t contacts, rows;
     double (*missing)[2][2]; ///< per row, for stiffness and damping: what contacts still to come add to translation and rotation
-    bool *moves;
-    bool damping; ///< which of the two is multiplied by
+    bool damping;            ///< which of the two is multiplied by
     int dimension;
 } whole;
 
 static void whole_free(whole *w)
 {
-    pls_release(&w->rod);
+    pls_release(&w->packed);
     pls_release(&w->missing);
-    pls_release(&w->moves);
 }
 
-static rod rod_of(const pls_world *world, size_t candidate)
+static packed_contact pack(const pls_world *world, size_t candidate)
 {
     const pls_bodies *b = &world->bodies;
-    pls_joint t = pls_joint_of(world, candidate);
+    pls_contact_rate t = pls_contact_rate_of(world, candidate);
     double root_i = sqrt(b->load[t.i].inv_mass), root_j = t.held ? 0.0 : sqrt(b->load[t.j].inv_mass);
     double turn_i = root_i > 0.0 ? 1.0 / sqrt(pls_smallest_moment(&b->mass[t.i], world->def.dimension)) : 0.0;
     double turn_j = root_j > 0.0 ? 1.0 / sqrt(pls_smallest_moment(&b->mass[t.j], world->def.dimension)) : 0.0;
-    return (rod){.i = t.i,
-                 .j = t.j,
-                 .n = {(float)t.n.x, (float)t.n.y, (float)t.n.z},
-                 .lever_i = (float)(t.lever_i * turn_i),
-                 .lever_j = (float)(t.lever_j * turn_j),
-                 .root_i = (float)root_i,
-                 .root_j = (float)root_j,
-                 .normal = {(float)t.k.kn, (float)t.k.cn},
-                 .tangential = {(float)t.k.kt, (float)t.k.ct}};
+    return (packed_contact){.i = t.i,
+                            .j = t.j,
+                            .n = {(float)t.n.x, (float)t.n.y, (float)t.n.z},
+                            .lever_i = (float)(t.lever_i * turn_i),
+                            .lever_j = (float)(t.lever_j * turn_j),
+                            .root_i = (float)root_i,
+                            .root_j = (float)root_j,
+                            .normal = {(float)t.k.kn, (float)t.k.cn},
+                            .tangential = {(float)t.k.kt, (float)t.k.ct}};
 }
 
 static pls_status whole_make(const pls_world *world, int coordination, whole *w)
@@ -62,21 +60,20 @@ static pls_status whole_make(const pls_world *world, int coordination, whole *w)
     int *contacts = NULL;
     w->rows = b->count;
     w->dimension = world->def.dimension;
-    PLS_TRY(pls_allocate(&w->rod, pls_pair_list_touching(list), sizeof *w->rod, "contacts of the stable step"));
+    PLS_TRY(pls_allocate(&w->packed, pls_pair_list_touching(list), sizeof *w->packed, "contacts of the stable step"));
     PLS_TRY(pls_allocate(&w->missing, w->rows, sizeof *w->missing, "the stable step"));
-    PLS_TRY(pls_allocate(&w->moves, w->rows, sizeof *w->moves, "the stable step"));
     PLS_TRY(pls_allocate(&contacts, w->rows, sizeof *contacts, "the stable step"));
     for (size_t c = 0; c < list->count; ++c)
     {
         if (!pls_pair_touches(list, c)) continue;
-        w->rod[w->rods++] = rod_of(world, c);
+        if (b->load[list->row_i[c]].inv_mass == 0.0 && b->load[list->row_j[c]].inv_mass == 0.0) continue; // neither moves
+        w->packed[w->contacts++] = pack(world, c);
         ++contacts[list->row_i[c]];
         ++contacts[list->row_j[c]];
     }
     for (uint32_t row = 0; row < w->rows; ++row)
     {
-        w->moves[row] = b->load[row].inv_mass > 0.0;
-        if (!w->moves[row]) continue;
+        if (b->load[row].inv_mass == 0.0) continue;
         pls_body_rates missing = {.contacts = contacts[row]};
         pls_add_missing_contacts(world, row, coordination, &missing);
         w->missing[row][0][0] = missing.stiffness[0];
@@ -98,9 +95,9 @@ static void multiply(const void *context, const double *x, double *y)
     const whole *w = context;
     for (size_t row = 0; row < w->rows; ++row)
         for (size_t a = 0; a < 6; ++a) y[6 * row + a] = w->missing[row][w->damping][a >= 3] * x[6 * row + a];
-    for (size_t m = 0; m < w->rods; ++m)
+    for (size_t m = 0; m < w->contacts; ++m)
     {
-        const rod *t = &w->rod[m];
+        const packed_contact *t = &w->packed[m];
         const size_t i = 6 * (size_t)t->i, j = 6 * (size_t)t->j;
         double kn = (double)t->normal[w->damping], kt = (double)t->tangential[w->damping];
         double mi = (double)t->root_i, mj = (double)t->root_j, ri = (double)t->lever_i, rj = (double)t->lever_j;
@@ -125,7 +122,7 @@ static pls_status largest(whole *w, const pls_bodies *b, bool damping, double *x
         pls_random random = pls_random_stream(0, b->kind[row].number, PLS_FOR_USER);
         for (size_t a = 0; a < 6; ++a)
         {
-            bool moves = w->moves[row] && (w->dimension == 3 || a < 2 || a == 5);
+            bool moves = b->load[row].inv_mass > 0.0 && (w->dimension == 3 || a < 2 || a == 5);
             x[6 * row + a] = moves ? pls_random_uniform(&random) - 0.5 : 0.0;
         }
     }

@@ -65,12 +65,18 @@ static void nothing(const void *context, const double *x, double *y)
     for (size_t k = 0; k < count_of(context); ++k) y[k] = 0.0 * x[k];
 }
 
+/// Softening springs alone: no eigenvalue is positive.
+static void all_negative(const void *context, const double *x, double *y)
+{
+    for (size_t k = 0; k < count_of(context); ++k) y[k] = -(1.0 + (double)k) * x[k];
+}
+
 static void not_finite(const void *context, const double *x, double *y)
 {
     for (size_t k = 0; k < count_of(context); ++k) y[k] = k == 3 ? NAN : x[k];
 }
 
-static void zero_and_nan(void **state)
+static void zero_negative_and_nan(void **state)
 {
     (void)state;
     double x[10], largest;
@@ -78,6 +84,12 @@ static void zero_and_nan(void **state)
     start_anywhere(x, n);
     assert_int_equal(pls_lanczos_largest(nothing, &n, n, x, &largest), PLS_OK);
     assert_true(largest == 0.0);
+    for (size_t few = 1; few <= n; few += 9)
+    {
+        start_anywhere(x, few);
+        assert_int_equal(pls_lanczos_largest(all_negative, &few, few, x, &largest), PLS_OK);
+        assert_true(largest <= -1.0 + 1e-6 && largest >= -1.5);
+    }
     start_anywhere(x, n);
     assert_int_equal(pls_lanczos_largest(not_finite, &n, n, x, &largest), PLS_OK);
     assert_true(isnan(largest));
@@ -91,7 +103,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(largest_of_a_string),
         cmocka_unit_test(largest_that_stands_out),
-        cmocka_unit_test(zero_and_nan),
+        cmocka_unit_test(zero_negative_and_nan),
     };
     return cmocka_run_group_tests_name("lanczos", tests, NULL, NULL);
 }
