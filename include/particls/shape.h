@@ -1,5 +1,8 @@
 /// @file shape.h
-/// Shapes: what a grain looks like, in its own frame, centre of mass at the origin, before the body's scale.
+/// Shapes: what a grain looks like, as a signed distance function in its own frame, before the body's scale.
+///
+/// A shape needs one function, `sdf`. Mass, centre of mass, principal frame, bounds, surface nodes, support points, contact and pictures follow from it by default
+/// (slowly), and each can be had exactly or faster from a function of its own. See docs/extending.md.
 #ifndef PARTICLS_SHAPE_H
 #define PARTICLS_SHAPE_H
 
@@ -9,14 +12,51 @@
 extern "C" {
 #endif
 
-/// Volume and second moments at unit density. In 2D `volume` is the area and `inertia.z` the polar moment; the world multiplies by its thickness.
+typedef struct pls_shape pls_shape;
+
+/// Volume and moments at the shape's own density, 1 unless it says otherwise. In 2D `volume` is the area; the world multiplies by its thickness.
 typedef struct pls_mass_properties
 {
-    double volume;    ///< [m^3], 2D [m^2]
-    pls_vec3 inertia; ///< principal moments about the centre of mass [m^5], 2D: only z [m^4]
+    double volume;     ///< integral of the density [m^3], 2D [m^2]
+    pls_vec3 centre;   ///< centre of mass, in the shape's frame [m]
+    double inertia[6]; ///< tensor about the centre of mass: xx, yy, zz, xy, xz, yz [m^5]; 2D: only zz [m^4]
+    double error;      ///< estimated relative error of the quadrature; 0: closed form
 } pls_mass_properties;
 
-/// Operations of a shape. Fill in what is known; null where a default from `sdf` should serve.
+/// A convex polytope: what is left of many shapes when a rounding radius is taken off. Faces in the order of the right hand seen from outside.
+typedef struct pls_polytope
+{
+    const pls_vec3 *vertex;
+    uint32_t vertex_count;
+    const uint32_t *face_start; ///< face_count + 1 places in `face_vertex`; null for points and segments
+    const uint32_t *face_vertex;
+    const pls_vec3 *face_normal; ///< outward, unit
+    uint32_t face_count;
+    const uint32_t *neighbour_start; ///< per vertex: vertices joined to it by an edge, for walking uphill; null: try all
+    const uint32_t *neighbour;
+} pls_polytope;
+
+/// What a shape is made from besides its table of numbers.
+typedef struct pls_shape_part
+{
+    const pls_shape *shape; ///< lives as long as the whole
+    pls_vec3 position;      ///< of its frame in the frame of the whole [m]
+    pls_quat orientation;
+    double scale;
+} pls_shape_part;
+
+typedef struct pls_shape_input
+{
+    const double *values;   ///< as the table of parameters says
+    const pls_vec3 *points; ///< of the table's row of kind PLS_PARAMETER_POINTS, in 2D with z = 0
+    size_t point_count;
+    const char *path;            ///< of its row of kind PLS_PARAMETER_PATH; null: not given
+    const pls_shape_part *parts; ///< of its row of kind PLS_PARAMETER_SHAPES
+    size_t part_count;
+} pls_shape_input;
+
+/// Operations of a shape. Null where a default from `sdf` should serve. All but `prepare` and `release` are pure functions and are called from several threads.
+/// X are points and n unit vectors in the shape's frame, in 2D with z = 0.
 typedef struct pls_shape_ops
 {
     uint32_t api_version; ///< PLS_API_VERSION
@@ -25,14 +65,79 @@ typedef struct pls_shape_ops
     const pls_parameter *parameters;
     bool in_2d, in_3d; ///< where the shape may be used
     bool unbounded;    ///< extends to infinity (a half-space): never moves by forces, has no mass
+    bool convex;       ///< with any numbers; a shape that is so with some says it by `is_convex`
+    bool smooth; ///< its surface is twice differentiable with curvature everywhere: contact by Newton's method on the sphere of normals
 
-    /// Signed distance, negative inside [m].  P1 eq. 1. Required.
-    double (*sdf)(const double *values, pls_vec3 X);
-    /// Radius of the smallest sphere about the origin that holds the shape [m]; not called for unbounded shapes. Required otherwise.
-    double (*bounding_radius)(const double *values);
-    /// Volume and inertia at unit density. Required for bounded shapes.
-    pls_status (*mass_properties)(const double *values, int dimension, pls_mass_properties *out);
+    /// Check what the table cannot, and make what the other functions need (null and no data where numbers do). `*data` is released by `release`.
+    pls_status (*prepare)(const pls_shape_input *input, int dimension, void **data);
+    void (*release)(void *data);
+
+    /// Signed distance, negative inside [m].  P1 eq. 1. Required. Must be the true distance outside of the shape; inside it may be less negative.
+    double (*sdf)(const pls_shape *shape, pls_vec3 X);
+    /// Its gradient, of length one outside.
+    pls_vec3 (*gradient)(const pls_shape *shape, pls_vec3 X);
+    bool (*is_convex)(const pls_shape *shape);
+    /// The point of a convex shape that lies furthest along n, a radius `margin` less.
+    pls_vec3 (*support)(const pls_shape *shape, pls_vec3 n);
+    /// Derivative of the support point with respect to n (symmetric: xx, yy, zz, xy, xz, yz) [m], for `smooth` shapes.
+    void (*support_gradient)(const pls_shape *shape, pls_vec3 n, double derivative[6]);
+    /// Radius of the ball that rounds the shape: it is the set of points within `margin` of what `support` and `polytope` tell of [m].
+    double (*margin)(const pls_shape *shape);
+    /// The shape less its margin, if that is a polytope; else null.
+    const pls_polytope *(*polytope)(const pls_shape *shape);
+    /// argmin over Y of sdf(Y) + |Y - X|^2 / (2 step): the proximal map (P1 section 3), for the ADMM solver.
+    pls_vec3 (*proximal)(const pls_shape *shape, pls_vec3 X, double step);
+    /// Radius of a sphere about the centre of mass that holds the shape [m].
+    double (*bounding_radius)(const pls_shape *shape);
+    /// A box that holds the shape, the smallest if possible [m].
+    void (*bounds)(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper);
+    pls_status (*mass_properties)(const pls_shape *shape, pls_mass_properties *out);
+    /// Density relative to the material's; null: 1.
+    double (*density)(const pls_shape *shape, pls_vec3 X);
 } pls_shape_ops;
+
+/// A shape with its numbers. Made by `pls_shape_make`; to be read only.
+struct pls_shape
+{
+    const pls_shape_ops *ops;
+    unsigned users; ///< who keep it
+    int dimension;
+    double values[PLS_MAX_PARAMETERS];
+    void *data;  ///< what `prepare` made
+    double size; ///< how far it reaches from the origin, roughly [m]
+    bool convex;
+    double margin;                ///< [m]
+    const pls_polytope *polytope; ///< or null
+    double radius;                ///< of the bounding sphere about the centre of mass [m]; INFINITY if unbounded
+    pls_vec3 lower, upper;        ///< bounds [m]
+    pls_mass_properties mass;     ///< as measured, in the shape's frame
+    pls_vec3 moments;             ///< principal moments about the centre of mass; 2D: only z
+    pls_quat principal;           ///< turns principal axes into the shape's axes
+};
+
+/// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.
+/// INVALID_ARGUMENT tells where an SDF lies: not finite, not negative at the centre of mass (convex shapes), steeper than 1, or positive all over.
+pls_status pls_shape_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input, const char *name,
+                          pls_shape **out); // `name` starts messages: "shape 'stone'"
+/// One more keeper of the shape, who frees it too.
+pls_shape *pls_shape_keep(pls_shape *shape);
+/// Gone with its last keeper. Null is fine.
+void pls_shape_free(pls_shape *shape);
+
+/// From the frame of bodies (centre of mass, principal axes) to the shape's own.
+static inline pls_vec3 pls_shape_from_body(const pls_shape *shape, pls_vec3 X)
+{
+    return pls_add(pls_rotate(shape->principal, X), shape->mass.centre);
+}
+
+/// Signed distance, negative inside [m]. All these take and give points in the shape's own frame.
+double pls_shape_sdf(const pls_shape *shape, pls_vec3 X);
+/// By the shape's function or central differences.
+pls_vec3 pls_shape_gradient(const pls_shape *shape, pls_vec3 X);
+/// By the shape's function or, for convex shapes, from its SDF. Margin included.
+pls_vec3 pls_shape_support(const pls_shape *shape, pls_vec3 n);
+/// The point of the surface that is nearest.
+pls_vec3 pls_shape_nearest(const pls_shape *shape, pls_vec3 X);
 
 #ifdef __cplusplus
 }

@@ -98,6 +98,8 @@ void pls_world_destroy(pls_world *world);
 /// All of these may also be called between steps. `values` holds the parameters of `ops` in order of its table; null: all defaults.
 /// @{
 pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, pls_shape_id *id);
+/// A shape that is made already; the world keeps it, the caller still frees its own hold.
+pls_status pls_world_use_shape(pls_world *world, const char *name, pls_shape *shape, pls_shape_id *id);
 pls_status pls_world_add_material(pls_world *world, const pls_material_def *def, pls_material_id *id);
 pls_status pls_world_add_group(pls_world *world, const char *name, pls_group_id *id);
 /// The law between two materials (either order). Replaces an earlier one; contacts then begin anew.

@@ -22,7 +22,8 @@ typedef struct cell
 static double signed_distance(const pls_solid *solid, const double centre[3])
 {
     pls_vec3 x = pls_sub(pls_vec(centre[0], centre[1], centre[2]), solid->position);
-    return solid->scale * solid->ops->sdf(solid->values, pls_scale(pls_rotate_back(solid->orientation, x), 1 / solid->scale));
+    pls_vec3 own = pls_shape_from_body(solid->shape, pls_scale(pls_rotate_back(solid->orientation, x), 1 / solid->scale));
+    return solid->scale * pls_shape_sdf(solid->shape, own);
 }
 
 static double cell_volume(const cell *c, int dimension)

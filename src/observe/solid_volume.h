@@ -7,8 +7,7 @@
 /// A grain in the world.
 typedef struct pls_solid
 {
-    const pls_shape_ops *ops;
-    const double *values;
+    const pls_shape *shape;
     int dimension;
     pls_vec3 position;    ///< [m]
     pls_quat orientation; ///< grain frame to world

@@ -12,20 +12,19 @@ pls_surroundings pls_surroundings_of(const pls_world *world)
 pls_solid pls_surroundings_solid(const pls_surroundings *around, uint32_t row)
 {
     const pls_bodies *bodies = around->bodies;
-    const pls_shape_instance *shape = &around->world->shape[bodies->kind[row].shape];
+    const pls_shape *shape = around->world->shape[bodies->kind[row].shape].shape;
     const pls_body_place *place = &bodies->place[row];
     const pls_body_orientation *turned = &bodies->orientation[row];
     const int dimension = around->domain->dimension;
     const double scale = bodies->scale[row];
     return (pls_solid){
-        .ops = shape->ops,
-        .values = shape->values,
+        .shape = shape,
         .dimension = dimension,
         .position = pls_vec(place->x, place->y, place->z),
         .orientation = {turned->w, turned->x, turned->y, turned->z},
         .scale = scale,
         .radius = place->radius,
-        .volume = shape->properties.volume * scale * scale * (dimension == 3 ? scale : 1),
+        .volume = shape->mass.volume * scale * scale * (dimension == 3 ? scale : 1),
     };
 }
 

@@ -40,7 +40,7 @@ static pls_status add_shapes(pls_builder *b)
     for (size_t k = 0; k < b->scene->shape_count; ++k)
     {
         const pls_scene_shape *shape = &b->scene->shapes[k];
-        pls_status status = pls_world_add_shape(b->world, shape->name, shape->ops, shape->values, &b->shapes[k]);
+        pls_status status = pls_world_use_shape(b->world, shape->name, shape->made, &b->shapes[k]);
         PLS_TRY(pls_node_context(status, shape->node, "shape '%s'", shape->name));
     }
     return PLS_OK;
@@ -164,7 +164,7 @@ static pls_status initial_state(const pls_builder *b, const pls_scene_state *sta
     PLS_TRY(pls_build_state_body(b, state, copy, &index));
     if (state->initial || state->target == PLS_STATE_FREE) return PLS_OK;
     double scale = body_scale(b, (size_t)state->body, index);
-    double radius = b->scene->shapes[b->scene->bodies[state->body].shape].radius;
+    double radius = b->scene->shapes[b->scene->bodies[state->body].shape].made->radius;
     *value = state->target == PLS_STATE_RADIUS ? scale * radius : scale;
     return PLS_OK;
 }

@@ -158,10 +158,8 @@ static pls_status initial_velocity(const entry_plan *plan, const pls_points *poi
 static pls_status uniform_inertia(const pls_builder *b, const entry_plan *plan, pls_body_def *def)
 {
     if (isnan(def->mass) || !isnan(def->inertia.z)) return PLS_OK;
-    const pls_scene_shape *shape = &b->scene->shapes[plan->body->shape];
-    pls_mass_properties one;
-    PLS_TRY(shape->ops->mass_properties(shape->values, b->scene->dimension, &one));
-    def->inertia = pls_scale(one.inertia, def->mass / one.volume * def->scale * def->scale);
+    const pls_shape *shape = b->scene->shapes[plan->body->shape].made;
+    def->inertia = pls_scale(shape->moments, def->mass / shape->mass.volume * def->scale * def->scale);
     return PLS_OK;
 }
 

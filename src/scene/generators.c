@@ -95,7 +95,7 @@ static pls_status make_points(const pls_node *list, pls_points *points)
 static pls_status make_by_kind(const pls_scene *scene, const pls_scene_body *body, pls_points *points)
 {
     const pls_node *place = pls_node_get(body->node, "place");
-    double radius = scene->shapes[body->shape].radius, scale = pls_scene_number(body->node, "scale", 1.0);
+    double radius = scene->shapes[body->shape].made->radius, scale = pls_scene_number(body->node, "scale", 1.0);
     if (!place)
     {
         points->count = 1;

@@ -3,6 +3,7 @@
 #include "scene/scene_data.h"
 #include "scene/schema.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // ---------------------------------------------------------------------------------------------------------------------------------------
@@ -101,6 +102,17 @@ void pls_scene_parameters(const pls_parameter *table, const pls_node *map, doubl
     }
 }
 
+static pls_status make_shape(const pls_scene *scene, pls_scene_shape *shape)
+{
+    double values[3 * PLS_MAX_PARAMETERS];
+    char owner[PLS_NAME_SIZE + 16];
+    pls_scene_parameters(shape->ops->parameters, shape->node->child[0], values);
+    snprintf(owner, sizeof owner, "shape '%s'", shape->name);
+    const pls_shape_input input = {.values = values};
+    return pls_node_context(pls_shape_make(shape->ops, scene->dimension, &input, owner, &shape->made), shape->node, "shape '%s'",
+                            shape->name);
+}
+
 pls_status pls_scene_parse_shapes(pls_scene *scene)
 {
     const pls_node *map = pls_node_get(scene->root, "shapes");
@@ -108,12 +120,11 @@ pls_status pls_scene_parse_shapes(pls_scene *scene)
     for (size_t k = 0; k < map->count; ++k)
     {
         pls_scene_shape *shape = &scene->shapes[k];
-        *shape = (pls_scene_shape){.name = map->key[k]->text, .node = map->child[k], .radius = NAN};
+        *shape = (pls_scene_shape){.name = map->key[k]->text, .node = map->child[k]};
         shape->ops = pls_registry_find(&scene->shape_ops, map->child[k]->key[0]->text);
-        pls_scene_parameters(shape->ops->parameters, map->child[k]->child[0], shape->values);
-        if (!shape->ops->unbounded) shape->radius = shape->ops->bounding_radius(shape->values);
+        PLS_TRY(make_shape(scene, shape));
+        scene->shape_count = k + 1; // what is there is freed with the scene
     }
-    scene->shape_count = map->count;
     return PLS_OK;
 }
 

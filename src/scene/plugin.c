@@ -46,8 +46,7 @@ static pls_status add_shape(pls_plugin_host *door, const pls_shape_ops *ops)
     pls_scene *scene = ((host *)door)->scene;
     if (!ops) return pls_fail(PLS_PLUGIN, "add_shape was called with null");
     PLS_TRY(check_ops(ops->api_version, ops->name, ops->parameters, "shape"));
-    if (!ops->sdf || (!ops->unbounded && (!ops->bounding_radius || !ops->mass_properties)))
-        return pls_fail(PLS_PLUGIN, "the shape '%s' lacks one of sdf, bounding_radius, mass_properties", ops->name);
+    if (!ops->sdf) return pls_fail(PLS_PLUGIN, "the shape '%s' lacks its sdf", ops->name);
     return pls_registry_add(&scene->shape_ops, ops->name, ops);
 }
 

@@ -65,6 +65,7 @@ pls_status pls_scene_load(const char *path, const char *const *overrides, size_t
 void pls_scene_free(pls_scene *scene)
 {
     if (!scene) return;
+    for (size_t k = 0; k < scene->shape_count; ++k) pls_shape_free(scene->shapes[k].made);
     pls_scene_unload_plugins(scene);
     pls_registry_free(&scene->shape_ops);
     pls_registry_free(&scene->law_ops);

@@ -30,8 +30,7 @@ typedef struct pls_scene_shape
     const char *name;
     const pls_node *node; ///< map of parameters
     const pls_shape_ops *ops;
-    double values[3 * PLS_MAX_PARAMETERS];
-    double radius; ///< bounding radius at scale 1 [m], NaN when unbounded
+    pls_shape *made;
 } pls_scene_shape;
 
 typedef struct pls_scene_body

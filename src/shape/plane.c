@@ -13,12 +13,12 @@ static const pls_parameter parameters[] = {
     {.name = NULL},
 };
 
-// Both frames serve one function: in 2D bodies are turned about z only, so a plane's normal is its own y axis; the world gives X with
-// the normal's coordinate in z in 3D and in y in 2D, where z is zero.
-static double sdf(const double *values, pls_vec3 X)
+static double sdf(const pls_shape *shape, pls_vec3 X) { return shape->dimension == 2 ? X.y : X.z; }
+
+static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
 {
-    (void)values;
-    return X.z;
+    (void)X;
+    return shape->dimension == 2 ? pls_vec(0.0, 1.0, 0.0) : pls_vec(0.0, 0.0, 1.0);
 }
 
 const pls_shape_ops pls_plane_shape = {
@@ -29,5 +29,7 @@ const pls_shape_ops pls_plane_shape = {
     .in_2d = true,
     .in_3d = true,
     .unbounded = true,
+    .convex = true,
     .sdf = sdf,
+    .gradient = gradient,
 };

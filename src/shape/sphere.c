@@ -13,24 +13,42 @@ static const pls_parameter parameters[] = {
     {.name = NULL},
 };
 
-static double sdf(const double *values, pls_vec3 X) { return pls_length(X) - values[0]; }
+static double sdf(const pls_shape *shape, pls_vec3 X) { return pls_length(X) - shape->values[0]; }
 
-static double bounding_radius(const double *values) { return values[0]; }
-
-static pls_status mass_properties(const double *values, int dimension, pls_mass_properties *out)
+static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
 {
-    double r = values[0];
-    if (dimension == 2)
-    {
-        out->volume = M_PI * r * r;
-        out->inertia = pls_vec(0.0, 0.0, 0.5 * out->volume * r * r);
-    }
-    else
-    {
-        out->volume = 4.0 / 3.0 * M_PI * r * r * r;
-        double moment = 0.4 * out->volume * r * r;
-        out->inertia = pls_vec(moment, moment, moment);
-    }
+    (void)shape;
+    double length = pls_length(X);
+    return length > 0.0 ? pls_scale(X, 1.0 / length) : pls_vec(1.0, 0.0, 0.0);
+}
+
+// A point with a margin.
+static double margin(const pls_shape *shape) { return shape->values[0]; }
+
+static pls_vec3 support(const pls_shape *shape, pls_vec3 n)
+{
+    (void)shape;
+    (void)n;
+    return pls_vec(0.0, 0.0, 0.0);
+}
+
+static const pls_polytope *polytope(const pls_shape *shape)
+{
+    static const pls_vec3 centre = {0.0, 0.0, 0.0};
+    static const pls_polytope point = {.vertex = &centre, .vertex_count = 1};
+    (void)shape;
+    return &point;
+}
+
+static double bounding_radius(const pls_shape *shape) { return shape->values[0]; }
+
+static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *out)
+{
+    double r = shape->values[0];
+    *out = (pls_mass_properties){.volume = shape->dimension == 2 ? M_PI * r * r : 4.0 / 3.0 * M_PI * r * r * r};
+    double moment = (shape->dimension == 2 ? 0.5 : 0.4) * out->volume * r * r;
+    out->inertia[2] = moment;
+    if (shape->dimension == 3) out->inertia[0] = out->inertia[1] = moment;
     return PLS_OK;
 }
 
@@ -41,7 +59,13 @@ const pls_shape_ops pls_sphere_shape = {
     .parameters = parameters,
     .in_2d = true,
     .in_3d = true,
+    .convex = true,
+    .smooth = true,
     .sdf = sdf,
+    .gradient = gradient,
+    .support = support,
+    .margin = margin,
+    .polytope = polytope,
     .bounding_radius = bounding_radius,
     .mass_properties = mass_properties,
 };

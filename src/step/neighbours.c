@@ -160,7 +160,7 @@ static void set_wall_depths(pls_world *world)
     {
         pls_pair_section *section = &world->list.section[k];
         if (!section->wall) continue;
-        const pls_shape_instance *shape = &world->shape[world->bodies.kind[section->wall_row].shape];
+        const pls_shape *shape = world->shape[world->bodies.kind[section->wall_row].shape].shape;
         int place = pls_parameter_find(shape->ops->parameters, "lets_go");
         if (place >= 0 && shape->values[place] > 0.5) section->depth = 0.0;
     }

@@ -67,7 +67,7 @@ static pls_status drive_scale(pls_world *world, const pls_state_instance *state)
     uint32_t row = pls_body_row(world, state->def.body);
     if (row == PLS_NO_ROW || state->def.target == PLS_STATE_FREE) return PLS_OK;
     double value = world->state_value[state->first], before = world->bodies.place[row].radius;
-    double unit = world->shape[world->bodies.kind[row].shape].radius;
+    double unit = world->shape[world->bodies.kind[row].shape].shape->radius;
     pls_status status = pls_body_rescale(world, row, state->def.target == PLS_STATE_RADIUS ? value / unit : value, state->def.keep_density);
     if (status != PLS_OK) return pls_fail_context(status, "state '%s': ", state->def.name);
     if (world->prepared)

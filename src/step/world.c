@@ -107,6 +107,7 @@ void pls_world_destroy(pls_world *world)
     pls_law_table_free(&world->laws);
     pls_pair_list_free(&world->list);
     pls_contact_memory_free(&world->memory);
+    for (size_t k = 0; k < world->shape_count; ++k) pls_shape_free(world->shape[k].shape);
     pls_release(&world->shape);
     pls_release(&world->group);
     pls_release(&world->motion);
@@ -132,48 +133,37 @@ static pls_status check_name(const char *name, const char *what)
     return PLS_OK;
 }
 
-pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, pls_shape_id *id)
+pls_status pls_world_use_shape(pls_world *world, const char *name, pls_shape *shape, pls_shape_id *id)
 {
     *id = (pls_shape_id){0};
     PLS_TRY(check_name(name, "a shape"));
     if (pls_world_find_shape(world, name).index1) return pls_fail(PLS_DUPLICATE, "there is a shape '%s' already", name);
-    if (!ops || !ops->name || !ops->parameters || !ops->sdf || (!ops->unbounded && (!ops->bounding_radius || !ops->mass_properties)))
-        return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' lacks one of name, parameters, sdf, bounding_radius, mass_properties", name);
-    if (ops->api_version != PLS_API_VERSION)
-        return pls_fail(PLS_VERSION, "shape '%s' is made for API %u, this library has %d: compile it anew", ops->name, ops->api_version,
-                        PLS_API_VERSION);
-    if (!(world->def.dimension == 2 ? ops->in_2d : ops->in_3d))
-        return pls_fail(PLS_INVALID_ARGUMENT, "a %s cannot be used in %dD", ops->name, world->def.dimension);
-    if (!ops->unbounded && strcmp(ops->name, "sphere") != 0)
-        return pls_fail(PLS_INVALID_ARGUMENT, "there is no contact detection between a '%s' and other bodies", ops->name);
-    double defaults[PLS_MAX_PARAMETERS];
-    char owner[PLS_NAME_SIZE + 16];
-    snprintf(owner, sizeof owner, "shape '%s'", name);
-    if (pls_parameter_values(ops->parameters) > PLS_MAX_PARAMETERS)
-        return pls_fail(PLS_LIMIT_EXCEEDED, "%s has more than %d parameters", owner, PLS_MAX_PARAMETERS);
-    if (!values)
-    {
-        pls_parameters_default(ops->parameters, defaults);
-        values = defaults;
-    }
-    PLS_TRY(pls_parameters_check(ops->parameters, values, owner));
+    if (shape->dimension != world->def.dimension)
+        return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' is made for %dD, this world is %dD", name, shape->dimension,
+                        world->def.dimension);
+    if (!shape->ops->unbounded && strcmp(shape->ops->name, "sphere") != 0)
+        return pls_fail(PLS_INVALID_ARGUMENT, "there is no contact detection between a '%s' and other bodies", shape->ops->name);
     if (world->shape_count >= UINT16_MAX - 1) return pls_fail(PLS_LIMIT_EXCEEDED, "a world holds at most %d shapes", UINT16_MAX - 1);
     PLS_TRY(pls_reserve(&world->shape, &world->shape_capacity, world->shape_count + 1, sizeof *world->shape, "shapes"));
-    pls_shape_instance *shape = &world->shape[world->shape_count];
-    *shape = (pls_shape_instance){.ops = ops, .radius = INFINITY};
-    snprintf(shape->name, sizeof shape->name, "%s", name);
-    int count = pls_parameter_values(ops->parameters);
-    if (count > 0) memcpy(shape->values, values, (size_t)count * sizeof *values);
-    if (!ops->unbounded)
-    {
-        shape->radius = ops->bounding_radius(shape->values);
-        if (!(shape->radius > 0.0) || !isfinite(shape->radius))
-            return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' has bounding radius %g m; it must be positive and finite", name,
-                            shape->radius);
-        PLS_TRY(ops->mass_properties(shape->values, world->def.dimension, &shape->properties));
-    }
+    pls_shape_instance *instance = &world->shape[world->shape_count];
+    *instance = (pls_shape_instance){.shape = pls_shape_keep(shape)};
+    snprintf(instance->name, sizeof instance->name, "%s", name);
     id->index1 = (uint16_t)++world->shape_count;
     return PLS_OK;
+}
+
+pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, pls_shape_id *id)
+{
+    *id = (pls_shape_id){0};
+    PLS_TRY(check_name(name, "a shape"));
+    char owner[PLS_NAME_SIZE + 16];
+    snprintf(owner, sizeof owner, "shape '%s'", name);
+    pls_shape *shape = NULL;
+    const pls_shape_input input = {.values = values};
+    PLS_TRY(pls_shape_make(ops, world->def.dimension, &input, owner, &shape));
+    pls_status status = pls_world_use_shape(world, name, shape, id);
+    pls_shape_free(shape);
+    return status;
 }
 
 pls_status pls_world_add_material(pls_world *world, const pls_material_def *def, pls_material_id *id)
@@ -442,7 +432,7 @@ static pls_status check_body_def(const pls_world *world, const pls_body_def *def
 /// Mass and moments at unit scale from the shape, or as given.
 static pls_status body_mass(const pls_world *world, const pls_body_def *def, pls_body_mass *out)
 {
-    const pls_shape_instance *shape = &world->shape[def->shape.index1 - 1];
+    const pls_shape *shape = world->shape[def->shape.index1 - 1].shape;
     if (shape->ops->unbounded)
     {
         *out = (pls_body_mass){INFINITY, INFINITY, INFINITY, INFINITY};
@@ -451,12 +441,12 @@ static pls_status body_mass(const pls_world *world, const pls_body_def *def, pls
     const pls_material *material = &world->laws.material[def->material.index1 - 1];
     double density = material->values.density * world->domain.thickness, s = def->scale;
     double volume_scale = world->def.dimension == 2 ? s * s : s * s * s;
-    double mass = isnan(def->mass) ? density * shape->properties.volume * volume_scale : def->mass;
+    double mass = isnan(def->mass) ? density * shape->mass.volume * volume_scale : def->mass;
     if (isnan(mass))
         return pls_fail(PLS_INVALID_ARGUMENT, "material '%s' has no density, and a body of it has no mass of its own", material->name);
     if (!(mass > 0.0) || !isfinite(mass)) return pls_fail(PLS_INVALID_ARGUMENT, "a body has mass %g kg; it must be positive", mass);
-    double per_mass = s * s / shape->properties.volume; // moments of the shape as they are at this mass
-    pls_vec3 from_shape = pls_scale(shape->properties.inertia, mass * per_mass);
+    double per_mass = s * s / shape->mass.volume; // moments of the shape as they are at this mass
+    pls_vec3 from_shape = pls_scale(shape->moments, mass * per_mass);
     *out = (pls_body_mass){mass, isnan(def->inertia.x) ? from_shape.x : def->inertia.x,
                            isnan(def->inertia.y) ? from_shape.y : def->inertia.y, isnan(def->inertia.z) ? from_shape.z : def->inertia.z};
     bool wrong = !(out->iz > 0.0) || (world->def.dimension == 3 && (!(out->ix > 0.0) || !(out->iy > 0.0)));
@@ -478,7 +468,7 @@ static uint32_t motion_flags(const pls_world *world, const pls_body_def *def, co
 {
     const pls_motion_def *m = &def->motion;
     unsigned axes = world->def.dimension == 2 ? m->axes | PLS_AXIS_Z | PLS_AXIS_RX | PLS_AXIS_RY : m->axes;
-    bool unbounded = world->shape[def->shape.index1 - 1].ops->unbounded;
+    bool unbounded = world->shape[def->shape.index1 - 1].shape->ops->unbounded;
     uint32_t flags = unbounded ? PLS_BODY_UNBOUNDED : 0;
     if (unbounded && m->axes == 0) axes = PLS_AXIS_ALL; // a half-space without motion stands still
     if (axes == PLS_AXIS_ALL) flags |= PLS_BODY_DRIVEN;
@@ -504,7 +494,7 @@ static pls_status add_body(pls_world *world, const pls_body_def *def, pls_body_i
     uint32_t flags = motion_flags(world, def, &mass);
     pls_vec3 v = def->velocity, w = def->angular_velocity;
     if ((flags & PLS_BODY_DRIVEN) && !(has_motion && def->motion.function)) v = def->motion.velocity, w = def->motion.angular_velocity;
-    const pls_shape_instance *shape = &world->shape[def->shape.index1 - 1];
+    const pls_shape *shape = world->shape[def->shape.index1 - 1].shape;
     double inv_mass = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED)) ? 0.0 : 1.0 / mass.mass;
     double inv_inertia = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED | PLS_BODY_ANISOTROPIC)) ? 0.0 : 1.0 / mass.iz;
     bodies->place[row] =
@@ -571,7 +561,7 @@ pls_status pls_body_rescale(pls_world *world, uint32_t row, double scale, bool k
     double ratio = scale / bodies->scale[row];
     if (ratio == 1.0) return PLS_OK;
     bodies->scale[row] = scale;
-    bodies->place[row].radius = world->shape[bodies->kind[row].shape].radius * scale;
+    bodies->place[row].radius = world->shape[bodies->kind[row].shape].shape->radius * scale;
     pls_body_mass *mass = &bodies->mass[row];
     double mass_ratio = !keep_density ? 1.0 : world->def.dimension == 2 ? ratio * ratio : ratio * ratio * ratio;
     double inertia_ratio = mass_ratio * ratio * ratio;

@@ -10,14 +10,11 @@
 
 #include <particls/world.h>
 
-/// A shape with its numbers.
+/// A shape by its name in this world.
 typedef struct pls_shape_instance
 {
     char name[PLS_NAME_SIZE];
-    const pls_shape_ops *ops;
-    double values[PLS_MAX_PARAMETERS];
-    double radius;                  ///< bounding radius [m], infinite if unbounded
-    pls_mass_properties properties; ///< at unit density and scale
+    pls_shape *shape; ///< kept
 } pls_shape_instance;
 
 typedef struct pls_force_instance

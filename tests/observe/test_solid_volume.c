@@ -12,13 +12,14 @@
 static const double pi = 3.14159265358979323846;
 static const double promised = 1e-3; // of the whole volume
 
-static double ball_distance(const double *values, pls_vec3 X) { return pls_length(X) - values[0]; }
+static double ball_distance(const pls_shape *shape, pls_vec3 X) { return pls_length(X) - shape->values[0]; }
 
-static double disc_distance(const double *values, pls_vec3 X) { return hypot(X.x, X.y) - values[0]; }
+static double disc_distance(const pls_shape *shape, pls_vec3 X) { return hypot(X.x, X.y) - shape->values[0]; }
 
 /// A cuboid of half edges `values` (P1 eq. 26).
-static double cuboid_distance(const double *values, pls_vec3 X)
+static double cuboid_distance(const pls_shape *shape, pls_vec3 X)
 {
+    const double *values = shape->values;
     pls_vec3 d = pls_vec(fabs(X.x) - values[0], fabs(X.y) - values[1], fabs(X.z) - values[2]);
     double outside = pls_length(pls_vec(fmax(d.x, 0), fmax(d.y, 0), fmax(d.z, 0)));
     return outside + fmin(fmax(d.x, fmax(d.y, d.z)), 0);
@@ -27,13 +28,13 @@ static double cuboid_distance(const double *values, pls_vec3 X)
 static const pls_shape_ops ball_ops = {.sdf = ball_distance};
 static const pls_shape_ops disc_ops = {.sdf = disc_distance};
 static const pls_shape_ops cuboid_ops = {.sdf = cuboid_distance};
-static const double unit_radius[1] = {1};
-static const double half_edges[3] = {0.5, 0.4, 0.3};
+#define AS_IT_IS .principal = {1, 0, 0, 0}
+static const pls_shape unit_ball = {.ops = &ball_ops, .values = {1}, AS_IT_IS}, unit_disc = {.ops = &disc_ops, .values = {1}, AS_IT_IS};
+static const pls_shape cuboid = {.ops = &cuboid_ops, .values = {0.5, 0.4, 0.3}, AS_IT_IS};
 
 static pls_solid ball(pls_vec3 position, double radius)
 {
-    return (pls_solid){.ops = &ball_ops,
-                       .values = unit_radius,
+    return (pls_solid){.shape = &unit_ball,
                        .dimension = 3,
                        .position = position,
                        .orientation = pls_quat_identity(),
@@ -45,7 +46,7 @@ static pls_solid ball(pls_vec3 position, double radius)
 static pls_solid disc(pls_vec3 position, double radius)
 {
     pls_solid solid = ball(position, radius);
-    solid.ops = &disc_ops;
+    solid.shape = &unit_disc;
     solid.dimension = 2;
     solid.volume = pi * radius * radius;
     return solid;
@@ -131,8 +132,7 @@ static void a_disc_is_cut_as_an_area(void **state)
 static void any_shape_is_cut_in_its_own_frame(void **state)
 {
     (void)state;
-    pls_solid solid = {.ops = &cuboid_ops,
-                       .values = half_edges,
+    pls_solid solid = {.shape = &cuboid,
                        .dimension = 3,
                        .position = pls_vec(1, 1, 1),
                        .orientation = pls_quat_identity(),

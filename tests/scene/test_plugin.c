@@ -93,7 +93,7 @@ static void plugins_that_are_no_good_are_refused_with_the_reason(void **state)
                    "the contact law 'old' is made for version 7");
     assert_refused(
         PLUGIN_START PLUGIN_API
-        "static double sdf(const double *v, pls_vec3 X) { (void)v; return X.x; }\n"
+        "static double sdf(const pls_shape *s, pls_vec3 X) { (void)s; return X.x; }\n"
         "static const pls_shape_ops shape = {.api_version = PLS_API_VERSION, .name = \"sphere\", .sdf = sdf, .unbounded = true};\n"
         "pls_status particls_plugin(pls_plugin_host *host) { return host->add_shape(host, &shape); }\n",
         "already registered");

@@ -1,0 +1,292 @@
+// shape.c -- a shape with its numbers, and what follows from its SDF alone.
+//
+// Support points. For a true distance, the foot of a far point p + t n is the point of the shape nearest to it; taken again from there, p <- foot(p + t n), it comes
+// to the point that lies furthest along n (the proximal point algorithm on -n.x; for polytopes in finitely many steps, else the error shrinks by L/t each time).
+// Bounds and the bounding sphere follow. A shape without a foot function has one: X - phi grad phi.
+
+#include <particls/shape.h>
+
+#include "base/alloc.h"
+#include "base/random.h"
+#include "math/principal_axes.h"
+#include "shape/mass_quadrature.h"
+
+#include <string.h>
+
+enum {
+    TRIALS = 2000,      ///< pairs of points at which an SDF is tried
+    SUPPORT_TURNS = 40, ///< of the search for a support point
+    CLIMBS = 30         ///< of the search for the furthest point
+};
+static const double steepness = 1e-9;  ///< by which an SDF may be steeper than 1, for round-off
+static const double foot_error = 1e-3; ///< of the size: how far from the surface the foot of a point outside may lie
+static const double far_away = 20.0;   ///< sizes from which support points are sought
+
+double pls_shape_sdf(const pls_shape *shape, pls_vec3 X) { return shape->ops->sdf(shape, X); }
+
+pls_vec3 pls_shape_gradient(const pls_shape *shape, pls_vec3 X)
+{
+    if (shape->ops->gradient) return shape->ops->gradient(shape, X);
+    // Central differences; far away phi is smooth over longer distances, and its round-off larger.
+    double h = 1e-5 * fabs(shape->ops->sdf(shape, X)) + 1e-6 * shape->size;
+    pls_vec3 g = pls_vec(0.0, 0.0, 0.0);
+    g.x = (shape->ops->sdf(shape, pls_vec(X.x + h, X.y, X.z)) - shape->ops->sdf(shape, pls_vec(X.x - h, X.y, X.z))) / (2.0 * h);
+    g.y = (shape->ops->sdf(shape, pls_vec(X.x, X.y + h, X.z)) - shape->ops->sdf(shape, pls_vec(X.x, X.y - h, X.z))) / (2.0 * h);
+    if (shape->dimension == 3)
+        g.z = (shape->ops->sdf(shape, pls_vec(X.x, X.y, X.z + h)) - shape->ops->sdf(shape, pls_vec(X.x, X.y, X.z - h))) / (2.0 * h);
+    return g;
+}
+
+pls_vec3 pls_shape_nearest(const pls_shape *shape, pls_vec3 X)
+{
+    for (int k = 0; k < 4; ++k) // once for a true distance; again for the round-off of differences
+    {
+        double phi = pls_shape_sdf(shape, X);
+        if (fabs(phi) < 1e-15 * shape->size) break;
+        X = pls_sub(X, pls_scale(pls_shape_gradient(shape, X), phi));
+    }
+    return X;
+}
+
+static pls_vec3 support_from_sdf(const pls_shape *shape, pls_vec3 n)
+{
+    double t = far_away * shape->size;
+    pls_vec3 p = pls_vec(0.0, 0.0, 0.0);
+    for (int k = 0; k < SUPPORT_TURNS; ++k)
+    {
+        pls_vec3 next = pls_shape_nearest(shape, pls_add(p, pls_scale(n, t)));
+        double moved = pls_length(pls_sub(next, p));
+        p = next;
+        if (moved < 1e-12 * shape->size) break;
+    }
+    return p;
+}
+
+pls_vec3 pls_shape_support(const pls_shape *shape, pls_vec3 n)
+{
+    if (!shape->ops->support) return support_from_sdf(shape, n);
+    pls_vec3 p = shape->ops->support(shape, n);
+    return shape->margin > 0.0 ? pls_add(p, pls_scale(n, shape->margin)) : p;
+}
+
+// ---- size ---------------------------------------------------------------------------------------------------------------------------------------------------
+
+static const pls_vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+
+/// How far the shape reaches, roughly, from its distances to far points: t - phi(t e) tends to its extent along e.
+static pls_status guess_size(pls_shape *shape, const char *name)
+{
+    const int count = 2 * shape->dimension;
+    double t = 1.0, size = 0.0;
+    double phi = shape->ops->sdf(shape, pls_vec(0.0, 0.0, 0.0));
+    if (isfinite(phi) && phi != 0.0) t = fabs(phi);
+    for (int k = 0; k < 200; ++k, t *= 4.0)
+    {
+        double reach = 0.0;
+        for (int a = 0; a < count; ++a)
+        {
+            phi = shape->ops->sdf(shape, pls_scale(axes[a], t));
+            if (!isfinite(phi))
+                return pls_fail(PLS_INVALID_ARGUMENT, "the SDF of %s is %g at (%g, %g, %g) m; it must be finite everywhere", name, phi,
+                                t * axes[a].x, t * axes[a].y, t * axes[a].z);
+            reach = fmax(reach, t - phi);
+        }
+        if (reach > 0.0 && reach < 0.1 * t && fabs(reach - size) < 0.05 * reach)
+        {
+            shape->size = reach;
+            return PLS_OK;
+        }
+        size = reach;
+        if (t > 1e30) break;
+    }
+    return pls_fail(PLS_INVALID_ARGUMENT,
+                    "%s has no end: %g m away its SDF still says that it is near. Bounded shapes only, and true distances", name, t);
+}
+
+static void find_bounds(pls_shape *shape)
+{
+    if (shape->ops->bounds)
+    {
+        shape->ops->bounds(shape, &shape->lower, &shape->upper);
+        return;
+    }
+    double *lower[3] = {&shape->lower.x, &shape->lower.y, &shape->lower.z}, *upper[3] = {&shape->upper.x, &shape->upper.y, &shape->upper.z};
+    for (int a = 0; a < shape->dimension; ++a)
+    {
+        *upper[a] = pls_dot(pls_shape_support(shape, axes[2 * a]), axes[2 * a]);
+        *lower[a] = -pls_dot(pls_shape_support(shape, axes[2 * a + 1]), axes[2 * a + 1]);
+    }
+}
+
+/// The furthest point from `centre`: from many directions, climb from support point to support point.
+static double find_radius(const pls_shape *shape, pls_vec3 centre)
+{
+    double radius = 0.0;
+    for (int k = 0; k < 27; ++k)
+    {
+        pls_vec3 e = pls_vec(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+        if (shape->dimension == 2) e.z = 0.0;
+        if (pls_dot(e, e) == 0.0) continue;
+        e = pls_unit(e);
+        for (int c = 0; c < CLIMBS; ++c)
+        {
+            pls_vec3 d = pls_sub(pls_shape_support(shape, e), centre);
+            double length = pls_length(d);
+            if (!(length > radius * (1.0 + 1e-12)) && c > 0) break;
+            radius = fmax(radius, length);
+            e = pls_scale(d, 1.0 / length);
+        }
+    }
+    return radius * (1.0 + 1e-9);
+}
+
+// ---- is it a distance? -------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_vec3 random_point(const pls_shape *shape, pls_random *random, double margin)
+{
+    double u[3];
+    for (int a = 0; a < 3; ++a) u[a] = pls_random_uniform(random);
+    pls_vec3 side = pls_sub(shape->upper, shape->lower), middle = pls_scale(pls_add(shape->upper, shape->lower), 0.5);
+    double grow = 1.0 + margin;
+    return pls_vec(middle.x + (u[0] - 0.5) * side.x * grow, middle.y + (u[1] - 0.5) * side.y * grow,
+                   middle.z + (u[2] - 0.5) * side.z * grow);
+}
+
+/// An SDF may not be steeper than 1 anywhere, and its feet must lie on the surface.
+static pls_status try_sdf(const pls_shape *shape, const char *name)
+{
+    pls_random random = pls_random_stream(1, 0, PLS_FOR_USER);
+    for (int k = 0; k < TRIALS; ++k)
+    {
+        pls_vec3 a = random_point(shape, &random, 1.0), b = random_point(shape, &random, 1.0);
+        if (k & 1) b = pls_add(a, pls_scale(pls_sub(b, a), 1e-3)); // near by
+        double at_a = pls_shape_sdf(shape, a), at_b = pls_shape_sdf(shape, b), apart = pls_length(pls_sub(a, b));
+        if (!isfinite(at_a))
+            return pls_fail(PLS_INVALID_ARGUMENT, "the SDF of %s is %g at (%g, %g, %g) m; it must be finite everywhere", name, at_a, a.x,
+                            a.y, a.z);
+        if (fabs(at_a - at_b) > apart * (1.0 + steepness) + 1e-12 * shape->size)
+            return pls_fail(
+                PLS_INVALID_ARGUMENT,
+                "the SDF of %s is steeper than a distance can be: from (%g, %g, %g) m to (%g, %g, %g) m it changes from %.9g to %.9g m, "
+                "by %.6g times the way. Divide it by its steepest slope, or give a true distance",
+                name, a.x, a.y, a.z, b.x, b.y, b.z, at_a, at_b, fabs(at_a - at_b) / apart);
+        if (at_a <= 0.0) continue;
+        pls_vec3 foot = pls_sub(a, pls_scale(pls_shape_gradient(shape, a), at_a));
+        double left = pls_shape_sdf(shape, foot);
+        if (fabs(left) > foot_error * (shape->size + at_a))
+            return pls_fail(
+                PLS_INVALID_ARGUMENT,
+                "the SDF of %s is no true distance outside: at (%g, %g, %g) m it says %.6g m, but so far against its gradient, at "
+                "(%g, %g, %g) m, it still says %.3g m",
+                name, a.x, a.y, a.z, at_a, foot.x, foot.y, foot.z, left);
+    }
+    return PLS_OK;
+}
+
+// ---- making one -----------------------------------------------------------------------------------------------------------------------------------------
+
+/// Principal axes and moments of the inertia tensor.
+static void find_principal(pls_shape *shape)
+{
+    const double *t = shape->mass.inertia;
+    shape->principal = pls_quat_identity();
+    if (shape->dimension == 2)
+    {
+        shape->moments = pls_vec(0.0, 0.0, t[2]);
+        return;
+    }
+    double size = t[0] + t[1] + t[2], beside = fmax(fabs(t[3]), fmax(fabs(t[4]), fabs(t[5])));
+    if (beside <= 1e-12 * size + 2.0 * shape->mass.error * size) // its axes are principal ones
+    {
+        shape->moments = pls_vec(t[0], t[1], t[2]);
+        return;
+    }
+    double value[3];
+    pls_principal_axes(t, value, &shape->principal);
+    shape->moments = pls_vec(value[0], value[1], value[2]);
+}
+
+static pls_status measure(pls_shape *shape, const char *name)
+{
+    const pls_shape_ops *ops = shape->ops;
+    shape->convex = ops->convex || (ops->is_convex && ops->is_convex(shape));
+    shape->margin = ops->margin ? ops->margin(shape) : 0.0;
+    shape->polytope = ops->polytope ? ops->polytope(shape) : NULL;
+    if (ops->unbounded) return PLS_OK;
+    PLS_TRY(guess_size(shape, name));
+    find_bounds(shape);
+    PLS_TRY(try_sdf(shape, name));
+    pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
+    if (ops->mass_properties)
+        PLS_TRY(ops->mass_properties(shape, &shape->mass));
+    else
+        PLS_TRY(pls_mass_by_quadrature(shape, middle, find_radius(shape, middle), &shape->mass));
+    shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : find_radius(shape, shape->mass.centre);
+    if (!(shape->radius > 0.0) || !isfinite(shape->radius) || !(shape->mass.volume > 0.0) || !isfinite(shape->mass.volume))
+        return pls_fail(PLS_INVALID_ARGUMENT, "%s has radius %g m and volume %g; both must be positive and finite", name, shape->radius,
+                        shape->mass.volume);
+    double phi = pls_shape_sdf(shape, shape->mass.centre);
+    if (shape->convex && !(phi < 0.0))
+        return pls_fail(PLS_INVALID_ARGUMENT, "the SDF of %s is %g m at its centre of mass, (%g, %g, %g) m; inside it must be negative",
+                        name, phi, shape->mass.centre.x, shape->mass.centre.y, shape->mass.centre.z);
+    find_principal(shape);
+    return PLS_OK;
+}
+
+static pls_status check_ops(const pls_shape_ops *ops, int dimension, const char *name)
+{
+    if (!ops || !ops->name || !ops->parameters || !ops->sdf)
+        return pls_fail(PLS_INVALID_ARGUMENT, "%s lacks one of name, parameters, sdf", name);
+    if (ops->api_version != PLS_API_VERSION)
+        return pls_fail(PLS_VERSION, "%s is made for API %u, this library has %d: compile it anew", name, ops->api_version,
+                        PLS_API_VERSION);
+    if (!(dimension == 2 ? ops->in_2d : ops->in_3d))
+        return pls_fail(PLS_INVALID_ARGUMENT, "%s: a %s cannot be used in %dD", name, ops->name, dimension);
+    if (pls_parameter_values(ops->parameters) > PLS_MAX_PARAMETERS)
+        return pls_fail(PLS_LIMIT_EXCEEDED, "%s has more than %d parameters", name, PLS_MAX_PARAMETERS);
+    return PLS_OK;
+}
+
+static pls_status fill(pls_shape *shape, const pls_shape_input *input, const char *name)
+{
+    const pls_shape_ops *ops = shape->ops;
+    const int count = pls_parameter_values(ops->parameters);
+    if (input->values && count > 0)
+        memcpy(shape->values, input->values, (size_t)count * sizeof *shape->values);
+    else
+        pls_parameters_default(ops->parameters, shape->values);
+    PLS_TRY(pls_parameters_check(ops->parameters, shape->values, name));
+    pls_shape_input mine = *input;
+    mine.values = shape->values;
+    if (ops->prepare) PLS_TRY(ops->prepare(&mine, shape->dimension, &shape->data));
+    return measure(shape, name);
+}
+
+pls_status pls_shape_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input, const char *name, pls_shape **out)
+{
+    *out = NULL;
+    PLS_TRY(check_ops(ops, dimension, name));
+    pls_shape *shape = NULL;
+    PLS_TRY(pls_allocate(&shape, 1, sizeof *shape, "a shape"));
+    *shape =
+        (pls_shape){.ops = ops, .users = 1, .dimension = dimension, .radius = INFINITY, .size = INFINITY, .principal = pls_quat_identity()};
+    pls_status status = fill(shape, input, name);
+    if (status != PLS_OK)
+        pls_shape_free(shape);
+    else
+        *out = shape;
+    return status;
+}
+
+pls_shape *pls_shape_keep(pls_shape *shape)
+{
+    ++shape->users;
+    return shape;
+}
+
+void pls_shape_free(pls_shape *shape)
+{
+    if (!shape || --shape->users > 0) return;
+    if (shape->ops->release && shape->data) shape->ops->release(shape->data);
+    pls_release(&shape);
+}
