@@ -19,6 +19,8 @@ particls_require(FYAML libfyaml-dev libfyaml)
 particls_require(MUPARSER libmuparser-dev muparser)
 particls_require(HDF5 libhdf5-dev hdf5-serial hdf5) # Debian keeps a parallel variant beside the serial one
 particls_require(ZLIB zlib1g-dev zlib)
+particls_require(QHULL libqhull-dev qhull_r)
+particls_require(PNG libpng-dev libpng)
 if(PARTICLS_TESTS)
     particls_require(CMOCKA libcmocka-dev cmocka)
 endif()

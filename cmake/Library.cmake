@@ -17,7 +17,7 @@ target_compile_features(particls PUBLIC c_std_17)
 target_compile_options(particls PRIVATE ${PARTICLS_BASELINE_FLAGS})
 target_link_libraries(particls
     PUBLIC m # the inline vector functions of the public headers use sqrt
-    PRIVATE particls_flags PkgConfig::FYAML PkgConfig::MUPARSER PkgConfig::HDF5 PkgConfig::ZLIB ${CMAKE_DL_LIBS})
+    PRIVATE particls_flags PkgConfig::FYAML PkgConfig::MUPARSER PkgConfig::HDF5 PkgConfig::ZLIB PkgConfig::QHULL PkgConfig::PNG ${CMAKE_DL_LIBS})
 
 if(PARTICLS_SIMD_SOURCES)
     foreach(isa IN LISTS PARTICLS_ISAS)
