@@ -102,9 +102,9 @@ struct pls_shape
     const pls_shape_ops *ops;
     unsigned users; ///< who keep it
     int dimension;
-    double values[PLS_MAX_PARAMETERS];
-    void *data;  ///< what `prepare` made
-    double size; ///< how far it reaches from the origin, roughly [m]
+    double values[3 * PLS_MAX_PARAMETERS]; ///< as the table of parameters says
+    void *data;                            ///< what `prepare` made
+    double size;                           ///< how far it reaches from the origin, roughly [m]
     bool convex;
     double margin;                ///< [m]
     const pls_polytope *polytope; ///< or null

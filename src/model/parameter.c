@@ -1,13 +1,18 @@
 // parameter.c -- tables of named numbers: places, defaults and range checks.
 //
-// A row with `components` = 3 takes three places in the array of values, so a place is the sum of the components of the rows before it.
+// A row with `components` = 3 takes three places in the array of values, so a place is the sum of the components of the rows before it. Rows
+// that are no numbers (points, a path, shapes) have no components.
 
 #include <particls/parameter.h>
 
 #include <stdio.h>
 #include <string.h>
 
-static int row_components(const pls_parameter *row) { return row->components > 1 ? row->components : 1; }
+static int row_components(const pls_parameter *row)
+{
+    if (row->kind != PLS_PARAMETER_NUMBER) return 0;
+    return row->components > 1 ? row->components : 1;
+}
 
 int pls_parameter_values(const pls_parameter *table)
 {
@@ -21,7 +26,7 @@ int pls_parameter_find(const pls_parameter *table, const char *name)
     int place = 0;
     for (const pls_parameter *row = table; row && row->name && name; ++row)
     {
-        if (strcmp(row->name, name) == 0) return place;
+        if (strcmp(row->name, name) == 0) return row->kind == PLS_PARAMETER_NUMBER ? place : -1;
         place += row_components(row);
     }
     return -1;

@@ -242,8 +242,8 @@ static pls_status check_ops(const pls_shape_ops *ops, int dimension, const char 
                         PLS_API_VERSION);
     if (!(dimension == 2 ? ops->in_2d : ops->in_3d))
         return pls_fail(PLS_INVALID_ARGUMENT, "%s: a %s cannot be used in %dD", name, ops->name, dimension);
-    if (pls_parameter_values(ops->parameters) > PLS_MAX_PARAMETERS)
-        return pls_fail(PLS_LIMIT_EXCEEDED, "%s has more than %d parameters", name, PLS_MAX_PARAMETERS);
+    if (pls_parameter_values(ops->parameters) > 3 * PLS_MAX_PARAMETERS)
+        return pls_fail(PLS_LIMIT_EXCEEDED, "%s has more than %d values", name, 3 * PLS_MAX_PARAMETERS);
     return PLS_OK;
 }
 

@@ -32,6 +32,13 @@ static pls_vec3 support(const pls_shape *shape, pls_vec3 n)
     return pls_vec(0.0, 0.0, 0.0);
 }
 
+static void support_gradient(const pls_shape *shape, pls_vec3 n, double derivative[6])
+{
+    (void)shape;
+    (void)n;
+    for (int k = 0; k < 6; ++k) derivative[k] = 0.0;
+}
+
 static const pls_polytope *polytope(const pls_shape *shape)
 {
     static const pls_vec3 centre = {0.0, 0.0, 0.0};
@@ -64,6 +71,7 @@ const pls_shape_ops pls_sphere_shape = {
     .sdf = sdf,
     .gradient = gradient,
     .support = support,
+    .support_gradient = support_gradient,
     .margin = margin,
     .polytope = polytope,
     .bounding_radius = bounding_radius,

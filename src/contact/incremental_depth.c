@@ -1,0 +1,200 @@
+// incremental_depth.c -- distance or depth of a pair, from scratch or from where the last step left it.
+//
+// Cores that are apart are GJK's, whose last simplex is mostly still the nearest in the next step. Cores that overlap are pushed apart along the
+// last normal, by the last depth and a bit: GJK then gives a new normal, and the fixed point of that is a local minimum of F. It is the global one
+// as long as depths are small and the pair was followed from a gap, so that the expanding polytope is asked only for new or deep overlaps.
+
+#include "contact/convex.h"
+
+#include <float.h>
+
+enum { MOST_PUSHES = 60 };
+static const double push = 0.02;    // beyond the depth, of the smaller size
+static const double deep = 0.02;    // overlaps from here are solved from scratch
+static const double exact = 1e-13;  // of EPA on polytopes
+static const double roughly = 1e-3; // of EPA on smooth sets, to be refined
+
+static double smaller(const pls_convex *a, const pls_convex *b) { return fmin(a->size, b->size); }
+
+/// Witness points from the weights, exactly delta apart along the normal, then the margins.
+static void finish(const pls_convex *a, const pls_convex *b, const pls_simplex *s, pls_depth *d)
+{
+    pls_vec3 middle = pls_vec(0.0, 0.0, 0.0);
+    for (int k = 0; k < s->count; ++k) middle = pls_add(middle, pls_scale(pls_add(s->point[k].a, s->point[k].b), 0.5 * s->weight[k]));
+    d->on_a = pls_add(middle, pls_scale(d->normal, 0.5 * d->delta + a->margin));
+    d->on_b = pls_sub(middle, pls_scale(d->normal, 0.5 * d->delta + b->margin));
+    d->delta += a->margin + b->margin;
+}
+
+static void count_in(pls_depth *d, const pls_gap *gap)
+{
+    d->iterations += gap->iterations;
+    d->support_calls += gap->support_calls;
+}
+
+/// Cores apart?
+static bool gap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
+{
+    pls_gap gap = pls_gjk(a, b, pls_vec(0.0, 0.0, 0.0), s);
+    count_in(d, &gap);
+    if (gap.overlap) return false;
+    d->delta = -gap.distance;
+    d->normal = pls_scale(gap.v, -1.0 / gap.distance);
+    d->converged = gap.converged;
+    d->local = false;
+    return true;
+}
+
+static double depth_along(const pls_convex *a, const pls_convex *b, pls_vec3 n, pls_depth *d)
+{
+    pls_support_pair p = pls_support_of(a, b, pls_vec(0.0, 0.0, 0.0), n);
+    ++d->support_calls;
+    return pls_dot(p.w, n);
+}
+
+/// On a face of M, the origin above it: a local minimum of F, exactly. `s` becomes that face with weights.
+static bool above_face(pls_simplex *s, pls_vec3 n, double delta, int dimension)
+{
+    if (s->count != dimension) return false;
+    bool inside;
+    pls_simplex t = *s;
+    for (int k = 0; k < t.count; ++k) t.point[k].w = pls_sub(pls_sub(t.point[k].a, t.point[k].b), pls_scale(n, delta));
+    pls_simplex_nearest(&t, 3, &inside);
+    if (t.count != dimension) return false;
+    *s = t;
+    return true;
+}
+
+/// Depth along n from the witness points.
+static double depth_of_witness(const pls_simplex *s, pls_vec3 n)
+{
+    double delta = 0.0;
+    for (int k = 0; k < s->count; ++k) delta += s->weight[k] * pls_dot(n, pls_sub(s->point[k].a, s->point[k].b));
+    return delta;
+}
+
+/// Fixed point of pushing B along n by the depth and `beyond`, from d->normal and d->delta.
+static bool follow(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
+{
+    double L = smaller(a, b), beyond = push * L;
+    bool polytopes = a->polytope && b->polytope;
+    for (int k = 0; k < MOST_PUSHES; ++k)
+    {
+        pls_gap gap = pls_gjk(a, b, pls_scale(d->normal, d->delta + beyond), s);
+        count_in(d, &gap);
+        if (gap.overlap)
+        {
+            d->delta = depth_along(a, b, d->normal, d);
+            s->count = 0;
+            continue;
+        }
+        pls_vec3 n = pls_scale(gap.v, -1.0 / gap.distance);
+        double delta = depth_of_witness(s, n), turn = pls_length(pls_sub(n, d->normal)), change = fabs(delta - d->delta);
+        d->normal = n, d->delta = delta, d->local = true;
+        if (!gap.converged) return false;
+        if (delta < -PLS_TOUCHING * (a->size + b->size)) return gap_of(a, b, s, d) && d->converged; // F < 0: apart for certain
+        if (polytopes && above_face(s, n, delta, a->dimension)) return d->converged = true;
+        bool still = turn < 1e-8 || (change < 1e-9 * L && turn < 1e-5);
+        if (still && (!polytopes || fabs(delta) < PLS_TOUCHING * L)) return d->converged = true;
+        beyond = fmin(push * L, fmax(delta, 1e-6 * L)); // less far: further turns, and flatter seen from nearer by smooth sets
+    }
+    return false;
+}
+
+/// Cores that overlap, by the expanding polytope; smooth ones are refined.
+static void overlap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
+{
+    double scale = a->size + b->size;
+    bool polytopes = a->polytope && b->polytope;
+    pls_depth found = pls_epa(a, b, (polytopes ? exact : roughly) * scale, s);
+    found.iterations += d->iterations, found.support_calls += d->support_calls;
+    *d = found;
+    if (polytopes) return;
+    pls_simplex t = {.count = 0};
+    pls_depth finer = found;
+    finer.converged = false;
+    if (follow(a, b, &t, &finer) && finer.delta <= found.delta + 1e-9 * scale)
+    {
+        *d = finer, *s = t;
+        d->local = false;
+        return;
+    }
+    pls_simplex none = {.count = 0};
+    *d = pls_epa(a, b, 1e-9 * scale, &none);
+    d->iterations += finer.iterations, d->support_calls += finer.support_calls;
+    *s = none;
+}
+
+static void from_scratch(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
+{
+    s->count = 0;
+    if (!gap_of(a, b, s, d)) overlap_of(a, b, s, d);
+}
+
+pls_depth pls_depth_cold(const pls_convex *a, const pls_convex *b)
+{
+    pls_depth d = {.converged = false};
+    pls_simplex s;
+    from_scratch(a, b, &s, &d);
+    finish(a, b, &s, &d);
+    return d;
+}
+
+static pls_vec3 vec_of(const double v[3]) { return pls_vec(v[0], v[1], v[2]); }
+
+static void put(double to[3], pls_vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+static void recall(const pls_convex *a, const pls_convex *b, const pls_depth_state *state, pls_simplex *s)
+{
+    s->count = state->size[0] == a->size && state->size[1] == b->size ? (int)state->count : 0;
+    for (int k = 0; k < s->count; ++k)
+    {
+        s->point[k].a = pls_add(a->centre, pls_rotate(a->orientation, vec_of(state->point_a[k])));
+        s->point[k].b = pls_add(b->centre, pls_rotate(b->orientation, vec_of(state->point_b[k])));
+        s->point[k].stored = k;
+    }
+}
+
+/// Points that were stored before keep their numbers to the bit: there and back through the frames they would drift.
+static void remember(const pls_convex *a, const pls_convex *b, const pls_simplex *s, const pls_depth *d, pls_depth_state *state)
+{
+    pls_depth_state old = *state;
+    *state = (pls_depth_state){.known = 1.0, .delta = d->delta, .size = {a->size, b->size}, .count = s->count < 3 ? s->count : 3};
+    put(state->normal, pls_rotate_back(a->orientation, d->normal));
+    for (int k = 0; k < (int)state->count; ++k)
+    {
+        int from = s->point[k].stored;
+        put(state->point_a[k], from >= 0 ? vec_of(old.point_a[from]) : pls_rotate_back(a->orientation, pls_sub(s->point[k].a, a->centre)));
+        put(state->point_b[k], from >= 0 ? vec_of(old.point_b[from]) : pls_rotate_back(b->orientation, pls_sub(s->point[k].b, b->centre)));
+    }
+}
+
+/// From the state: a gap stays one, an overlap is followed.
+static bool from_state(const pls_convex *a, const pls_convex *b, const pls_depth_state *state, pls_simplex *s, pls_depth *d)
+{
+    recall(a, b, state, s);
+    d->normal = pls_unit(pls_rotate(a->orientation, vec_of(state->normal)));
+    d->delta = state->delta;
+    if (d->delta < 0.0)
+    {
+        pls_vec3 n = d->normal;
+        if (gap_of(a, b, s, d)) return d->converged;
+        s->count = 0;
+        d->normal = n, d->delta = depth_along(a, b, n, d);
+    }
+    if (d->delta > deep * smaller(a, b)) return false;
+    return follow(a, b, s, d) && d->delta <= deep * smaller(a, b);
+}
+
+pls_depth pls_depth_warm(const pls_convex *a, const pls_convex *b, pls_depth_state *state)
+{
+    pls_depth d = {.converged = false};
+    pls_simplex s = {.count = 0};
+    if (state->known == 0.0 || !from_state(a, b, state, &s, &d)) from_scratch(a, b, &s, &d);
+    if (d.converged)
+        remember(a, b, &s, &d, state);
+    else
+        *state = (pls_depth_state){.known = 0.0};
+    finish(a, b, &s, &d);
+    return d;
+}

@@ -1,0 +1,314 @@
+// superquadric.c -- the superquadric (|x/a|^(2/e2) + |y/b|^(2/e2))^(e2/e1) + |z/c|^(2/e1) <= 1 (Barr, "Superquadrics and angle-preserving transformations", IEEE CG&A
+// 1981), in 2D the superellipse |x/a|^(2/e2) + |y/b|^(2/e2) <= 1.
+//
+// It is the unit ball of a norm made of two p-norms, so convex for all exponents up to 2, and its support function is the dual norm: with X = a n_x, ... and
+// P = 2 / (2 - e2), Q = 2 / (2 - e1),  h(n) = ||(||(X, Y)||_P, Z)||_Q, in closed form with its derivatives.
+//
+// The signed distance of a convex body is the maximum over unit normals n of F(n) = n . y - h(n), outside and inside. It is sought by Newton's method in the logarithms of
+// the components of n (by symmetry y and n are taken positive), where all derivatives are smooth, even at the flat and the sharp places of the surface, where
+// those of h or of the surface itself are infinite: with alpha = (X/k)^P, beta = 1 - alpha, gamma = (k/h)^Q, zeta = 1 - gamma the products n_i s_i and
+// n_i n_j d s_i / d n_j are polynomials of these. Damping (Levenberg 1944) makes every step a rise. Outside there is one maximum. Inside there may be several, one
+// for each nearby part of the surface, hence several starts. An error of n counts squared in the distance.
+
+#include "shape/builtin.h"
+
+#include <string.h>
+
+static const pls_parameter parameters[] = {
+    {.name = "half",
+     .unit = "m",
+     .meaning = "half axes along x, y, z (2D: the third is not used)",
+     .initial = PLS_REQUIRED,
+     .minimum = 0.0,
+     .maximum = INFINITY,
+     .open_minimum = true,
+     .components = 3},
+    {.name = "epsilon1",
+     .unit = "",
+     .meaning = "north-south exponent: 0.1 nearly square, 1 round, 1.9 nearly a bipyramid (2D: not used)",
+     .initial = 1.0,
+     .minimum = 0.1,
+     .maximum = 1.9},
+    {.name = "epsilon2",
+     .unit = "",
+     .meaning = "east-west exponent: 0.1 nearly square, 1 round, 1.9 nearly a rhombus",
+     .initial = 1.0,
+     .minimum = 0.1,
+     .maximum = 1.9},
+    {.name = NULL},
+};
+
+enum { NORTH_SOUTH = 3, EAST_WEST = 4, MOST_STEPS = 100 };
+
+static double dual_exponent(double epsilon) { return 2.0 / (2.0 - epsilon); }
+
+// ---- the support function in logarithms ---------------------------------------------------------------------------------------------------------------------
+
+/// What is to be found: the largest F for a point y >= 0.
+typedef struct search
+{
+    int count;                  ///< components of n: 2 or 3
+    double y[3], half[3], P, Q; ///< Q = P of two equal numbers in 2D, where it does not matter
+} search;
+
+/// Where it is: log n, n of length 1, and there F, its gradient and Hessian with respect to log n.
+typedef struct place
+{
+    double w[3], n[3], value, gradient[3], hessian[3][3];
+} place;
+
+/// || (A, B) ||_p from logarithms of A and B; `share` is the part of A^p in the sum.
+static double log_norm(double a, double b, double p, double *share)
+{
+    double most = fmax(a, b), x = exp(p * (a - most)), y = exp(p * (b - most));
+    *share = x / (x + y);
+    return most + log(x + y) / p;
+}
+
+/// h, n_i s_i and n_i n_j ds_i/dn_j.
+static double support_products(const search *s, const double w[3], double product[3], double curve[3][3])
+{
+    double alpha, gamma = 1.0;
+    double log_h = log_norm(log(s->half[0]) + w[0], log(s->half[1]) + w[1], s->P, &alpha), beta = 1.0 - alpha;
+    if (s->count == 3) log_h = log_norm(log_h, log(s->half[2]) + w[2], s->Q, &gamma);
+    const double h = exp(log_h), zeta = 1.0 - gamma, part[3] = {gamma * alpha, gamma * beta, zeta};
+    const double inner = (s->P - 1.0) * h * gamma * alpha * beta, outer = (s->Q - 1.0) * h * gamma * zeta, mix[3] = {alpha, beta, -1.0};
+    for (int i = 0; i < 3; ++i)
+    {
+        product[i] = h * part[i];
+        for (int j = 0; j < 3; ++j) curve[i][j] = outer * mix[i] * mix[j] + (i == 2 || j == 2 ? 0.0 : i == j ? inner : -inner);
+    }
+    return h;
+}
+
+static void look(const search *s, place *at)
+{
+    double product[3], curve[3][3], square = 0.0, most = at->w[0], d[3] = {0.0};
+    for (int i = 1; i < s->count; ++i) most = fmax(most, at->w[i]);
+    for (int i = 0; i < s->count; ++i) square += exp(2.0 * (at->w[i] - most));
+    at->n[2] = 0.0;
+    for (int i = 0; i < s->count; ++i)
+    {
+        at->w[i] -= most + 0.5 * log(square);
+        at->n[i] = exp(at->w[i]);
+    }
+    at->value = -support_products(s, at->w, product, curve);
+    for (int i = 0; i < s->count; ++i)
+    {
+        at->value += at->n[i] * s->y[i];
+        d[i] = at->n[i] * s->y[i] - product[i];
+    }
+    const double F = at->value, *n = at->n;
+    for (int i = 0; i < s->count; ++i) at->gradient[i] = d[i] - F * n[i] * n[i];
+    for (int i = 0; i < s->count; ++i)
+    {
+        for (int j = 0; j < s->count; ++j)
+            at->hessian[i][j] = 3.0 * F * n[i] * n[i] * n[j] * n[j] - curve[i][j] - d[i] * n[j] * n[j] - d[j] * n[i] * n[i];
+        at->hessian[i][i] += at->gradient[i] - F * n[i] * n[i];
+    }
+}
+
+// ---- the largest F ------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Solve (damping - Hessian) step = gradient by Cholesky's factors; false if the matrix is not positive definite.
+static bool damped_step(const search *s, const place *at, double damping, double step[3])
+{
+    double L[3][3], z[3];
+    for (int i = 0; i < s->count; ++i)
+        for (int j = 0; j <= i; ++j)
+        {
+            double sum = (i == j ? damping : 0.0) - at->hessian[i][j];
+            for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
+            if (i == j && !(sum > 0.0)) return false;
+            L[i][j] = i == j ? sqrt(sum) : sum / L[j][j];
+        }
+    for (int i = 0; i < s->count; ++i)
+    {
+        z[i] = at->gradient[i];
+        for (int k = 0; k < i; ++k) z[i] -= L[i][k] * z[k];
+        z[i] /= L[i][i];
+    }
+    for (int i = s->count - 1; i >= 0; --i)
+    {
+        step[i] = z[i];
+        for (int k = i + 1; k < s->count; ++k) step[i] -= L[k][i] * step[k];
+        step[i] /= L[i][i];
+    }
+    return true;
+}
+
+static void climb(const search *s, place *at)
+{
+    const double size = fmax(fmax(s->half[0], s->half[1]), s->half[2]), longest = 3.0;
+    double damping = 1e-6 * size;
+    look(s, at);
+    for (int k = 0; k < MOST_STEPS; ++k)
+    {
+        double step[3], gain = 0.0, length = 0.0;
+        if (!damped_step(s, at, damping, step))
+        {
+            damping *= 8.0;
+            continue;
+        }
+        for (int i = 0; i < s->count; ++i) gain += step[i] * at->gradient[i], length = fmax(length, fabs(step[i]));
+        if (gain < 1e-17 * size) return;
+        place next = *at;
+        for (int i = 0; i < s->count; ++i) next.w[i] += step[i] * fmin(1.0, longest / length);
+        look(s, &next);
+        bool better = next.value > at->value;
+        if (!better && gain < 1e-14 * size) return; // round-off
+        damping = better ? fmax(0.1 * damping, 1e-14 * size) : 8.0 * damping;
+        if (better) *at = next;
+    }
+}
+
+/// The gauge of y and the direction of its gradient, in logarithms: outside a start near the answer.
+static double gauge_normal(const search *s, double w[3])
+{
+    double p = s->P / (s->P - 1.0), q = s->Q / (s->Q - 1.0), share, t[3];
+    for (int i = 0; i < 3; ++i) t[i] = log(fmax(s->y[i], 1e-12 * s->half[i]) / s->half[i]);
+    double inner = log_norm(t[0], t[1], p, &share), all = s->count == 3 ? log_norm(inner, t[2], q, &share) : inner;
+    for (int i = 0; i < 2; ++i) w[i] = (p - 1.0) * (t[i] - inner) + (s->count == 3 ? (q - 1.0) * (inner - all) : 0.0) - log(s->half[i]);
+    w[2] = (q - 1.0) * (t[2] - all) - log(s->half[2]);
+    double most = fmax(fmax(w[0], w[1]), s->count == 3 ? w[2] : -INFINITY);
+    for (int i = 0; i < 3; ++i) w[i] = fmax(w[i] - most, -7.0);
+    return all;
+}
+
+static place find_normal(const pls_shape *shape, pls_vec3 X)
+{
+    const double *v = shape->values;
+    search s = {.count = shape->dimension, .y = {fabs(X.x), fabs(X.y), fabs(X.z)}};
+    memcpy(s.half, v, sizeof s.half);
+    if (s.count == 2) s.half[2] = 0.0;
+    s.P = dual_exponent(v[EAST_WEST]);
+    s.Q = dual_exponent(s.count == 2 ? v[EAST_WEST] : v[NORTH_SOUTH]);
+    if (s.count == 2) s.half[2] = s.half[0], s.y[2] = 0.0;
+    place best = {.value = 0.0};
+    bool inside = gauge_normal(&s, best.w) < 0.0;
+    climb(&s, &best);
+    for (int k = 1; inside && k < 1 << s.count; ++k) // towards each side, edge and corner of the octant
+    {
+        place other = {.value = 0.0};
+        for (int i = 0; i < s.count; ++i) other.w[i] = (k >> i & 1 ? 0.0 : -4.0) - log(s.half[i]);
+        climb(&s, &other);
+        if (other.value > best.value) best = other;
+    }
+    return best;
+}
+
+static double sdf(const pls_shape *shape, pls_vec3 X) { return find_normal(shape, X).value; }
+
+static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
+{
+    place at = find_normal(shape, X);
+    return pls_vec(copysign(at.n[0], X.x), copysign(at.n[1], X.y), copysign(at.n[2], X.z));
+}
+
+// ---- support ------------------------------------------------------------------------------------------------------------------------------------------------
+
+static double products_at(const pls_shape *shape, pls_vec3 n, double least, double size[3], double product[3], double curve[3][3])
+{
+    const double *v = shape->values, w[3] = {fabs(n.x), fabs(n.y), fabs(n.z)};
+    double logs[3];
+    search s = {
+        .count = shape->dimension, .half = {v[0], v[1], v[2]}, .P = dual_exponent(v[EAST_WEST]), .Q = dual_exponent(v[NORTH_SOUTH])};
+    for (int i = 0; i < 3; ++i) size[i] = fmax(w[i], least), logs[i] = log(size[i]);
+    return support_products(&s, logs, product, curve);
+}
+
+static pls_vec3 support(const pls_shape *shape, pls_vec3 n)
+{
+    double size[3], product[3], curve[3][3];
+    products_at(shape, n, 1e-290, size, product, curve);
+    return pls_vec(n.x != 0.0 ? copysign(product[0] / size[0], n.x) : 0.0, n.y != 0.0 ? copysign(product[1] / size[1], n.y) : 0.0,
+                   n.z != 0.0 && shape->dimension == 3 ? copysign(product[2] / size[2], n.z) : 0.0);
+}
+
+/// Where a component of n is 0 the surface is flat (exponent below 1) and the derivative infinite: it is taken 1e-8 beside.
+static void support_gradient(const pls_shape *shape, pls_vec3 n, double derivative[6])
+{
+    static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+    const double sign[3] = {copysign(1.0, n.x), copysign(1.0, n.y), copysign(1.0, n.z)};
+    double size[3], product[3], curve[3][3];
+    products_at(shape, n, 1e-8, size, product, curve);
+    for (int k = 0; k < 6; ++k)
+    {
+        int i = row[k], j = column[k];
+        bool used = i < shape->dimension && j < shape->dimension;
+        derivative[k] = used ? sign[i] * sign[j] * curve[i][j] / (size[i] * size[j]) : 0.0;
+    }
+}
+
+/// The largest A x + B y with x^(1/e) + y^(1/e) = 1 (squares of coordinates): a dual norm, for e >= 1 the larger of both.
+static double most_of(double A, double B, double e)
+{
+    double most = fmax(A, B), less = fmin(A, B);
+    return e < 1.0 ? most * pow(1.0 + pow(less / most, 1.0 / (1.0 - e)), 1.0 - e) : most;
+}
+
+static double bounding_radius(const pls_shape *shape)
+{
+    const double *v = shape->values;
+    double square = most_of(v[0] * v[0], v[1] * v[1], v[EAST_WEST]);
+    if (shape->dimension == 3) square = most_of(square, v[2] * v[2], v[NORTH_SOUTH]);
+    return sqrt(square) * (1.0 + 1e-14);
+}
+
+static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper)
+{
+    const double *v = shape->values;
+    *upper = pls_vec(v[0], v[1], shape->dimension == 2 ? 0.0 : v[2]);
+    *lower = pls_scale(*upper, -1.0);
+}
+
+// ---- mass ---------------------------------------------------------------------------------------------------------------------------------------------------
+
+static double beta_function(double x, double y) { return exp(lgamma(x) + lgamma(y) - lgamma(x + y)); }
+
+/// Integral of 1 or x^2 over the superellipse of half axes 1 (Dirichlet).
+static double ellipse_moment(double epsilon, double power)
+{
+    double p = 0.5 * epsilon;
+    return 4.0 * p * p * exp(lgamma((power + 1.0) * p) + lgamma(p) - lgamma((power + 2.0) * p + 1.0));
+}
+
+/// Closed form, see Jaklic, Leonardis and Solina, "Segmentation and recovery of superquadrics" (2000), chapter 2.
+static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *out)
+{
+    const double *v = shape->values, a = v[0], b = v[1], c = v[2], e1 = v[NORTH_SOUTH], e2 = v[EAST_WEST];
+    *out = (pls_mass_properties){0};
+    if (shape->dimension == 2)
+    {
+        out->volume = a * b * ellipse_moment(e2, 0.0);
+        out->inertia[2] = a * b * (a * a + b * b) * ellipse_moment(e2, 2.0);
+        return PLS_OK;
+    }
+    double scale = 2.0 * a * b * c * e1 * e2;
+    double side = 0.25 * scale * beta_function(1.5 * e2, 0.5 * e2) * beta_function(0.5 * e1, 2.0 * e1 + 1.0);
+    double xx = a * a * side, yy = b * b * side;
+    double zz = c * c * scale * beta_function(0.5 * e2, 0.5 * e2 + 1.0) * beta_function(1.5 * e1, e1 + 1.0);
+    out->volume = scale * beta_function(0.5 * e1 + 1.0, e1) * beta_function(0.5 * e2, 0.5 * e2);
+    out->inertia[0] = yy + zz;
+    out->inertia[1] = xx + zz;
+    out->inertia[2] = xx + yy;
+    return PLS_OK;
+}
+
+const pls_shape_ops pls_superquadric_shape = {
+    .api_version = PLS_API_VERSION,
+    .name = "superquadric",
+    .meaning = "a superquadric, between box, ellipsoid and bipyramid; in 2D a superellipse",
+    .parameters = parameters,
+    .in_2d = true,
+    .in_3d = true,
+    .convex = true, // up to exponents of 2
+    .smooth = true,
+    .sdf = sdf,
+    .gradient = gradient,
+    .support = support,
+    .support_gradient = support_gradient,
+    .bounding_radius = bounding_radius,
+    .bounds = bounds,
+    .mass_properties = mass_properties,
+};
