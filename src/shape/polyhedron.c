@@ -6,7 +6,7 @@
 
 #include "shape/polytope.h"
 
-#include "io/mesh.h"
+#include "shape/mesh.h"
 #include "shape/mass_quadrature.h"
 
 extern const pls_shape_ops pls_polyhedron_shape;

@@ -2,8 +2,8 @@
 //
 // Polygons become fans of triangles from their first corner. Normals, colours and textures in a file are passed over: which side of a triangle is outside, the
 // order of its corners tells. Every reader fails with CORRUPT and a message that begins with "file:line" (binary: the file and the number of the element).
-#ifndef PLS_IO_MESH_H
-#define PLS_IO_MESH_H
+#ifndef PLS_SHAPE_MESH_H
+#define PLS_SHAPE_MESH_H
 
 #include <particls/status.h>
 #include <particls/types.h>

@@ -3,7 +3,7 @@
 // A binary file has 80 bytes of anything (often "solid ..." too), the number of triangles n, and 50 bytes each; so a file of 84 + 50 n bytes is binary and any
 // other one text. Triangles stand alone in the file: corners at exactly the same place become one vertex, by a hash table.
 
-#include "io/mesh.h"
+#include "shape/mesh.h"
 
 #include "base/alloc.h"
 #include "base/hash.h"

@@ -3,7 +3,7 @@
 // The header tells what a file holds: elements, each with properties that are numbers or lists of numbers. Used are x, y, z of the element 'vertex' and the list
 // 'vertex_indices' (or 'vertex_index') of 'face'; all else is read over.
 
-#include "io/mesh.h"
+#include "shape/mesh.h"
 
 #include "base/alloc.h"
 

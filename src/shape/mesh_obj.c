@@ -3,7 +3,7 @@
 // Of an OBJ file the lines "v x y z" and "f a b c ..." are read; corners may be written a/t/n, and count from the last vertex when negative. All else (textures,
 // groups, materials) says nothing about the shape.
 
-#include "io/mesh.h"
+#include "shape/mesh.h"
 
 #include "base/atomic_file.h"
 #include "base/text.h"

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "base/atomic_file.h"
-#include "io/mesh.h"
+#include "shape/mesh.h"
 
 #include <string.h>
 
