@@ -5,7 +5,7 @@
 #include <particls/shape.h>
 
 extern const pls_shape_ops pls_sphere_shape, pls_plane_shape, pls_box_shape, pls_capsule_shape, pls_cylinder_shape, pls_ellipsoid_shape,
-    pls_superquadric_shape;
+    pls_superquadric_shape, pls_polyhedron_shape, pls_polygon_shape;
 
 /// Integrals of (a + |u|)^2 over a disc and a ball of radius r [m^4, m^5]: what the ends and corners of rounded shapes add to a second moment.
 static inline double pls_disc_apart(double a, double r) { return r * r * (M_PI * (a * a + 0.25 * r * r) + 8.0 / 3.0 * a * r); }

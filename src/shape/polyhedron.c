@@ -1,30 +1,32 @@
-// polyhedron.c -- the convex polyhedron: the hull of points, or of the vertices of a mesh, rounded by a ball if wanted.
+// polyhedron.c -- the convex polyhedron, in 2D the polygon: the hull of points, or of the vertices of a mesh, rounded by a ball (disc) if wanted.
 //
 // phi(X) inside is the greatest height over a face's plane. Outside, the nearest point of a convex body is unique: if X is above a face and within its edges, that
 // face has it; else an edge of a face seen from X has it. Faces whose plane is not nearer than what was found are passed over. With `rounding` the points are the
-// centres of the ball, so the whole is larger by it, and phi less by it; it stays exact inside as well.
+// centres of the ball, so the whole is larger by it, and phi less by it; it stays exact inside as well. In 2D the faces are edges of two vertices.
 
+#include "shape/builtin.h"
+#include "shape/mass_quadrature.h"
+#include "shape/mesh.h"
 #include "shape/polytope.h"
 
-#include "shape/mesh.h"
-#include "shape/mass_quadrature.h"
+#define POINTS                                                                                                                    \
+    {                                                                                                                             \
+        .name = "points", .unit = "m", .meaning = "points whose convex hull it is, or centres of the ball (disc) that rounds it", \
+        .kind = PLS_PARAMETER_POINTS                                                                                              \
+    }
+#define ROUNDING                                                                                                                        \
+    {                                                                                                                                   \
+        .name = "rounding", .unit = "m", .meaning = "radius of a ball (disc) that rounds edges and corners; the whole is larger by it", \
+        .initial = 0.0, .minimum = 0.0, .maximum = INFINITY                                                                             \
+    }
 
-extern const pls_shape_ops pls_polyhedron_shape;
-
-static const pls_parameter parameters[] = {
-    {.name = "points",
-     .unit = "m",
-     .meaning = "points whose convex hull the polyhedron is, or centres of the ball that rounds it",
-     .kind = PLS_PARAMETER_POINTS},
+static const pls_parameter solid_parameters[] = {
+    POINTS,
     {.name = "path", .unit = "", .meaning = "mesh file (.obj, .stl, .ply) in place of points; its convex hull", .kind = PLS_PARAMETER_PATH},
-    {.name = "rounding",
-     .unit = "m",
-     .meaning = "radius of a ball that rounds edges and corners; the whole is larger by it",
-     .initial = 0.0,
-     .minimum = 0.0,
-     .maximum = INFINITY},
+    ROUNDING,
     {.name = NULL},
 };
+static const pls_parameter flat_parameters[] = {POINTS, ROUNDING, {.name = NULL}};
 
 static pls_status prepare(const pls_shape_input *input, int dimension, void **data)
 {
@@ -48,6 +50,12 @@ static bool is_over_face(const pls_polytope *p, uint32_t f, pls_vec3 X)
 {
     const uint32_t begin = p->face_start[f], end = p->face_start[f + 1];
     pls_vec3 a = p->vertex[p->face_vertex[end - 1]];
+    if (end - begin == 2)
+    {
+        pls_vec3 e = pls_sub(p->vertex[p->face_vertex[begin]], a);
+        double t = pls_dot(pls_sub(X, a), e);
+        return t >= 0.0 && t <= pls_dot(e, e);
+    }
     for (uint32_t k = begin; k < end; ++k)
     {
         pls_vec3 b = p->vertex[p->face_vertex[k]];
@@ -123,8 +131,9 @@ static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper)
 {
     const pls_hull *hull = shape->data;
     const double r = shape->values[0];
-    *lower = pls_sub(hull->lower, pls_vec(r, r, r));
-    *upper = pls_add(hull->upper, pls_vec(r, r, r));
+    const pls_vec3 more = pls_vec(r, r, shape->dimension == 2 ? 0.0 : r);
+    *lower = pls_sub(hull->lower, more);
+    *upper = pls_add(hull->upper, more);
 }
 
 static double bounding_radius(const pls_shape *shape)
@@ -133,7 +142,7 @@ static double bounding_radius(const pls_shape *shape)
 }
 
 /// Integrals of 1, x, xx, ... over tetrahedra from `o` to the triangles of the faces (Tonon, J. Math. Stat. 1, 2005; Eberly, Polyhedral Mass Properties, 2002).
-static void exact_mass(const pls_polytope *p, pls_vec3 o, pls_mass_properties *out)
+static void solid_mass(const pls_polytope *p, pls_vec3 o, pls_mass_properties *out)
 {
     double volume = 0.0, xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
     pls_vec3 first = {0.0, 0.0, 0.0};
@@ -161,32 +170,53 @@ static void exact_mass(const pls_polytope *p, pls_vec3 o, pls_mass_properties *o
     *out = (pls_mass_properties){.volume = volume, .centre = pls_add(o, m), .inertia = {yy + zz, xx + zz, xx + yy, -xy, -xz, -yz}};
 }
 
+/// Integrals over triangles from `o` to the edges.
+static void flat_mass(const pls_polytope *p, pls_vec3 o, pls_mass_properties *out)
+{
+    double area = 0.0, polar = 0.0;
+    pls_vec3 first = {0.0, 0.0, 0.0};
+    for (uint32_t f = 0; f < p->face_count; ++f)
+    {
+        pls_vec3 a = pls_sub(p->vertex[p->face_vertex[2 * f]], o), b = pls_sub(p->vertex[p->face_vertex[2 * f + 1]], o), s = pls_add(a, b);
+        const double v = 0.5 * (a.x * b.y - a.y * b.x);
+        area += v;
+        first = pls_add(first, pls_scale(s, v / 3.0));
+        polar += v / 12.0 * (pls_dot(s, s) + pls_dot(a, a) + pls_dot(b, b));
+    }
+    pls_vec3 m = pls_scale(first, 1.0 / area);
+    *out = (pls_mass_properties){.volume = area, .centre = pls_add(o, m), .inertia = {[2] = polar - area * pls_dot(m, m)}};
+}
+
 static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *out)
 {
     const pls_hull *hull = shape->data;
     pls_vec3 middle = pls_scale(pls_add(hull->lower, hull->upper), 0.5);
     if (shape->values[0] > 0.0)
         return pls_mass_by_quadrature(shape, middle, (pls_hull_radius(hull, middle) + shape->values[0]) * (1.0 + 1e-9), out);
-    *out = (pls_mass_properties){0};
-    exact_mass(&hull->body, middle, out);
+    if (shape->dimension == 2)
+        flat_mass(&hull->body, middle, out);
+    else
+        solid_mass(&hull->body, middle, out);
     return PLS_OK;
 }
 
+#define ANSWERS                                                                                                               \
+    .api_version = PLS_API_VERSION, .convex = true, .prepare = prepare, .release = release, .sdf = sdf, .gradient = gradient, \
+    .support = support, .margin = margin, .polytope = polytope, .bounding_radius = bounding_radius, .bounds = bounds,         \
+    .mass_properties = mass_properties
+
 const pls_shape_ops pls_polyhedron_shape = {
-    .api_version = PLS_API_VERSION,
     .name = "polyhedron",
     .meaning = "a convex polyhedron: the hull of points or of a mesh",
-    .parameters = parameters,
+    .parameters = solid_parameters,
     .in_3d = true,
-    .convex = true,
-    .prepare = prepare,
-    .release = release,
-    .sdf = sdf,
-    .gradient = gradient,
-    .support = support,
-    .margin = margin,
-    .polytope = polytope,
-    .bounding_radius = bounding_radius,
-    .bounds = bounds,
-    .mass_properties = mass_properties,
+    ANSWERS,
+};
+
+const pls_shape_ops pls_polygon_shape = {
+    .name = "polygon",
+    .meaning = "a convex polygon: the hull of points",
+    .parameters = flat_parameters,
+    .in_2d = true,
+    ANSWERS,
 };

@@ -8,11 +8,10 @@
 
 #include "base/random.h"
 #include "shape/mass_quadrature.h"
+#include "shape/builtin.h"
 #include "shape/polytope.h"
 
 #include <string.h>
-
-extern const pls_shape_ops pls_polyhedron_shape, pls_polygon_shape;
 
 enum { MOST = 500 };
 static pls_vec3 cloud[MOST];
