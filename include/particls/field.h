@@ -40,6 +40,7 @@ typedef enum pls_table_kind {
     PLS_TABLE_BODIES,
     PLS_TABLE_CONTACTS, ///< touching contacts, in order of (lower id, higher id); made on request
     PLS_TABLE_STATES,
+    PLS_TABLE_PAIRS,   ///< what pairs of parts of solid bodies remember, in order of (lower id, higher id, parts)
     PLS_TABLE_NUMBERS, ///< numbers ever given to bodies, the free ones too
     PLS_TABLE_COUNT
 } pls_table_kind;

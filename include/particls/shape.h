@@ -65,6 +65,7 @@ typedef struct pls_shape_ops
     const pls_parameter *parameters;
     bool in_2d, in_3d; ///< where the shape may be used
     bool unbounded;    ///< extends to infinity (a half-space): never moves by forces, has no mass
+    bool wall;         ///< a surface (a mesh, a polyline): never moves by forces, has no mass
     bool convex;       ///< with any numbers; a shape that is so with some says it by `is_convex`
     bool smooth; ///< its surface is twice differentiable with curvature everywhere: contact by Newton's method on the sphere of normals
 
@@ -113,6 +114,8 @@ struct pls_shape
     pls_mass_properties mass;     ///< as measured, in the shape's frame
     pls_vec3 moments;             ///< principal moments about the centre of mass; 2D: only z
     pls_quat principal;           ///< turns principal axes into the shape's axes
+    const pls_shape_part *part;   ///< convex parts it is made of, in its frame; null: it is its own only part
+    size_t part_count;
 };
 
 /// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.
@@ -129,6 +132,9 @@ static inline pls_vec3 pls_shape_from_body(const pls_shape *shape, pls_vec3 X)
 {
     return pls_add(pls_rotate(shape->principal, X), shape->mass.centre);
 }
+
+/// Parts whose bounds come within `radius` of X (in the shape's frame) [m], in order: the first `room` numbers go to `found`; returns how many there are.
+size_t pls_shape_parts_near(const pls_shape *shape, pls_vec3 X, double radius, uint32_t *found, size_t room);
 
 /// Signed distance, negative inside [m]. All these take and give points in the shape's own frame.
 double pls_shape_sdf(const pls_shape *shape, pls_vec3 X);

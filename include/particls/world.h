@@ -14,6 +14,7 @@
 #ifndef PARTICLS_WORLD_H
 #define PARTICLS_WORLD_H
 
+#include <particls/contact.h>
 #include <particls/field.h>
 #include <particls/force.h>
 #include <particls/law.h>
@@ -72,11 +73,12 @@ typedef struct pls_motion_def
 /// A rigid body. Copy `pls_default_body_def()` and change what you need; the world copies it.
 typedef struct pls_body_def
 {
-    pls_shape_id shape;        ///< required
-    pls_material_id material;  ///< required
-    pls_group_id group;        ///< the entry it belongs to; null: the unnamed group
-    pls_vec3 position;         ///< centre of mass [m]
-    pls_quat orientation;      ///< grain frame to world, unit. A plane's normal is its z axis (2D: y axis)
+    pls_shape_id shape;       ///< required
+    pls_material_id material; ///< required
+    pls_group_id group;       ///< the entry it belongs to; null: the unnamed group
+    pls_vec3 position;        ///< centre of mass [m]
+    pls_quat
+        orientation; ///< grain frame to world, unit. A plane's normal is its z axis (2D: y axis). Of other shapes the frame is that of the principal axes (pls_shape.principal)
     pls_vec3 velocity;         ///< [m/s]
     pls_vec3 angular_velocity; ///< [rad/s], world frame
     double scale;              ///< multiplies the shape's lengths, 1 by default
@@ -108,6 +110,8 @@ pls_status pls_world_set_law(pls_world *world, pls_material_id a, pls_material_i
 /// work and torque match and energy is booked exactly. True: each at its own surface point, x1 and x2 (P1 eq. 15b), and against a wall the torque too: what
 /// LAMMPS's granular styles do. The two differ by terms of the overlap over the radius.
 pls_status pls_world_set_lever_at_surface(pls_world *world, pls_material_id a, pls_material_id b, bool at_surface);
+/// How contacts of bodies that are not spheres are found (contact.h). INVALID_ARGUMENT for options that do not fit together.
+pls_status pls_world_set_narrow_options(pls_world *world, pls_material_id a, pls_material_id b, const pls_narrow_options *options);
 /// Change one parameter of the law between two materials; springs stay.
 pls_status pls_world_set_law_parameter(pls_world *world, pls_material_id a, pls_material_id b, const char *name, double value);
 /// Change a value of a material ("density", "young_modulus", "poisson_ratio"); laws are prepared anew. Masses of bodies do not change.

@@ -47,8 +47,6 @@ pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *b
 // A contact may open wider than the skin in the step in which the list is made. It stays a candidate for that step, which finds that it ended and books what its
 // spring held; so its end does not depend on the skin.
 
-static int16_t nearest_image(double d, double edge) { return edge > 0.0 ? (int16_t)fmax(fmin(-rint(d / edge), 32000.0), -32000.0) : 0; }
-
 /// Whether the broad phase may have left out a pair of spheres; true too often does no harm, and rounding must not make it false.
 static bool may_be_far(const pls_bodies *bodies, const pls_domain *domain, double skin, uint32_t i, uint32_t j)
 {
@@ -57,7 +55,7 @@ static bool may_be_far(const pls_bodies *bodies, const pls_domain *domain, doubl
     double square = 0.0, rounding = fabs(p->x) + fabs(p->y) + fabs(p->z) + fabs(q->x) + fabs(q->y) + fabs(q->z);
     for (int a = 0; a < 3; ++a)
     {
-        double nearest = d[a] + nearest_image(d[a], domain->edge[a]) * domain->edge[a];
+        double nearest = d[a] + pls_nearest_image(d[a], domain->edge[a]) * domain->edge[a];
         square += nearest * nearest;
     }
     return !(sqrt(square) + 1e-14 * rounding < p->radius + q->radius + 0.5 * skin);
@@ -123,7 +121,7 @@ static pls_near_pair near_pair_of(const pls_bodies *bodies, const pls_domain *do
     pls_near_pair pair = {.owner = swap ? b : a, .partner = swap ? a : b};
     const pls_body_place *p = &bodies->place[pair.owner], *q = &bodies->place[pair.partner];
     const double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z};
-    for (int k = 0; k < 3; ++k) pair.shift[k] = nearest_image(d[k], domain->edge[k]);
+    for (int k = 0; k < 3; ++k) pair.shift[k] = pls_nearest_image(d[k], domain->edge[k]);
     return pair;
 }
 

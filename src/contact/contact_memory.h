@@ -2,8 +2,13 @@
 #ifndef PLS_CONTACT_CONTACT_MEMORY_H
 #define PLS_CONTACT_CONTACT_MEMORY_H
 
-#include "contact/broad_phase.h"
 #include "contact/pair_list.h"
+
+/// Which image along an edge lies nearest, for a difference of positions d [m].
+static inline int16_t pls_nearest_image(double d, double edge)
+{
+    return edge > 0.0 ? (int16_t)fmax(fmin(-rint(d / edge), 32000.0), -32000.0) : 0;
+}
 
 enum { PLS_LONG_ROW = 64 }; ///< entries of one body above which they are sorted by digits
 

@@ -100,7 +100,7 @@ static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const 
         {
             const pls_body_place *p = &bodies->place[row];
             double height = n.x * (p->x - w->x) + n.y * (p->y - w->y) + n.z * (p->z - w->z);
-            if (bodies->kind[row].flags & PLS_BODY_UNBOUNDED) continue;
+            if (bodies->kind[row].flags & (PLS_BODY_UNBOUNDED | PLS_BODY_SOLID)) continue;
             if (!(height < p->radius + gap) && !pls_is_kept_at_wall(kept, wall, row)) continue;
             if (bodies->load[row].inv_mass == 0.0 && bodies->load[wall].inv_mass == 0.0 && !(bodies->kind[row].flags & PLS_BODY_SPECIAL))
                 continue;
@@ -123,7 +123,7 @@ static pls_status wall_sections(pls_pair_list *list, const pls_bodies *bodies, c
     for (uint32_t number = 0; number < bodies->numbers; ++number) // in order of numbers: sections do not depend on memory order
     {
         uint32_t row = bodies->row_of[number];
-        if (row != PLS_NO_ROW && (bodies->kind[row].flags & PLS_BODY_UNBOUNDED))
+        if (row != PLS_NO_ROW && (bodies->kind[row].flags & (PLS_BODY_UNBOUNDED | PLS_BODY_SOLID)) == PLS_BODY_UNBOUNDED)
             PLS_TRY(one_wall(list, bodies, domain, laws, gap, kept, row, found));
     }
     return PLS_OK;
@@ -391,21 +391,18 @@ static bool have_equal_radii(const pls_bodies *bodies)
 }
 
 pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
-                               double skin, bool growing, const pls_contact_memory *memory)
+                               pls_near_pairs *near, double skin, bool growing, const pls_contact_memory *memory)
 {
     list->section_count = list->block_count = list->count = list->wall_first = list->listed = 0;
     list->stale = true; // until it is whole
     list->equal_radii = !growing && have_equal_radii(bodies);
-    pls_near_pairs near = {0};
     pls_kept_pairs kept = {0};
     wall_pairs found = {0};
     size_t *next = NULL;
-    pls_status status = pls_broad_phase(bodies, domain, skin, &near);
-    if (status == PLS_OK) status = pls_find_kept(&kept, bodies, domain, skin, memory);
-    if (status == PLS_OK) status = pls_add_kept(&near, &kept, bodies, domain);
+    pls_status status = pls_find_kept(&kept, bodies, domain, skin, memory);
+    if (status == PLS_OK) status = pls_add_kept(near, &kept, bodies, domain);
     if (status == PLS_OK) status = pls_allocate(&next, laws->law_count + 1, sizeof *next, "sections of the pair list");
-    if (status == PLS_OK) status = lay_out(list, bodies, domain, laws, skin, &near, &kept, &found, next);
-    pls_near_pairs_free(&near);
+    if (status == PLS_OK) status = lay_out(list, bodies, domain, laws, skin, near, &kept, &found, next);
     pls_kept_pairs_free(&kept);
     pls_release(&found.row);
     pls_release(&next);

@@ -10,6 +10,7 @@
 #ifndef PLS_CONTACT_PAIR_LIST_H
 #define PLS_CONTACT_PAIR_LIST_H
 
+#include "contact/broad_phase.h"
 #include "law/law_table.h"
 #include "model/bodies.h"
 #include "model/domain.h"
@@ -151,10 +152,11 @@ void pls_contact_memory_free(pls_contact_memory *memory);
 /// Everything the touching contacts of the list remember, in list order.
 pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory);
 
-/// Make the list: all pairs nearer than `skin` and all in `memory`, with the memory of contacts from `memory`. `growing`: radii may change while it is in use.
-/// NOT_FOUND names two materials without a law; LIMIT_EXCEEDED for a periodic box narrower than two interaction ranges.
+/// Make the list: all pairs of balls in `near`, which are those nearer than `skin`, and all in `memory`, with the memory of contacts from `memory`.
+/// `growing`: radii may change while it is in use.
+/// NOT_FOUND names two materials without a law.
 pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
-                               double skin, bool growing, const pls_contact_memory *memory);
+                               pls_near_pairs *near, double skin, bool growing, const pls_contact_memory *memory);
 void pls_pair_list_free(pls_pair_list *list);
 size_t pls_pair_list_bytes(const pls_pair_list *list);
 /// Touching contacts now.

@@ -75,3 +75,30 @@ const uint8_t pls_packed_lanes[256][8] = {
     {2, 3, 4, 5, 6, 7, 0, 0}, {0, 2, 3, 4, 5, 6, 7, 0}, {1, 2, 3, 4, 5, 6, 7, 0}, {0, 1, 2, 3, 4, 5, 6, 7},
 };
 // clang-format on
+
+void pls_contact_law(const pls_law *law, double dt, size_t count, pls_contact_work *work)
+{
+    pls_law_batch batch = {
+        .count = count,
+        .dt = dt,
+        .constants = law->constants,
+        .delta = work->delta,
+        .normal_velocity = work->normal_velocity,
+        .slip_velocity_x = work->slip_velocity[0],
+        .slip_velocity_y = work->slip_velocity[1],
+        .slip_velocity_z = work->slip_velocity[2],
+        .effective_radius = work->effective_radius,
+        .effective_mass = work->effective_mass,
+        .spring_x = work->spring[0],
+        .spring_y = work->spring[1],
+        .spring_z = work->spring[2],
+        .normal_force = work->normal_force,
+        .shear_force_x = work->shear_force[0],
+        .shear_force_y = work->shear_force[1],
+        .shear_force_z = work->shear_force[2],
+        .damping_power = work->damping_power,
+        .slip_work = work->slip_work,
+    };
+    for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) batch.history[h] = work->history[h];
+    law->ops->evaluate(&batch);
+}

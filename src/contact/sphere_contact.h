@@ -58,6 +58,9 @@ typedef struct pls_contact_input
 PLS_SIMD_DECLARE(void, pls_contact_block, pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block,
                  pls_contact_work *work);
 
+/// Ask a law, through its door, about the first `count` (a multiple of 8) contacts of the work space.
+void pls_contact_law(const pls_law *law, double dt, size_t count, pls_contact_work *work);
+
 /// For each set of lanes (a byte) their numbers, packed to the front.
 extern const uint8_t pls_packed_lanes[256][8];
 

@@ -413,34 +413,6 @@ static inline __attribute__((always_inline)) void answer_linear(const pls_pair_l
     }
 }
 
-/// Any law, through its door, on the picked contacts.
-static void ask_law(const pls_law *law, const pls_contact_input *in, pls_contact_work *work)
-{
-    pls_law_batch batch = {
-        .count = (work->active_count + 7) / 8 * 8,
-        .dt = in->dt,
-        .constants = law->constants,
-        .delta = work->delta,
-        .normal_velocity = work->normal_velocity,
-        .slip_velocity_x = work->slip_velocity[0],
-        .slip_velocity_y = work->slip_velocity[1],
-        .slip_velocity_z = work->slip_velocity[2],
-        .effective_radius = work->effective_radius,
-        .effective_mass = work->effective_mass,
-        .spring_x = work->spring[0],
-        .spring_y = work->spring[1],
-        .spring_z = work->spring[2],
-        .normal_force = work->normal_force,
-        .shear_force_x = work->shear_force[0],
-        .shear_force_y = work->shear_force[1],
-        .shear_force_z = work->shear_force[2],
-        .damping_power = work->damping_power,
-        .slip_work = work->slip_work,
-    };
-    for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) batch.history[h] = work->history[h];
-    law->ops->evaluate(&batch);
-}
-
 static void load_effective(const pls_pair_list *list, const pls_contact_input *in, pls_contact_work *work)
 {
     for (size_t k = 0; k < (work->active_count + 7) / 8 * 8; ++k)
@@ -718,7 +690,7 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
         carry_springs(list, in, surface, NULL, 0, 0, work->active_count, work, 0, 0);
         if (law->ops->needs_effective) load_effective(list, in, work);
     }
-    ask_law(law, in, work);
+    pls_contact_law(law, in->dt, (work->active_count + 7) / 8 * 8, work);
     if (section->wall)
         store_walls(list, work);
     else

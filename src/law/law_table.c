@@ -69,7 +69,10 @@ pls_status pls_law_table_set(pls_law_table *table, uint16_t a, uint16_t b, const
         place = (uint16_t)table->law_count;
     }
     pls_law before = table->law[place], *law = &table->law[place];
-    *law = (pls_law){.ops = ops, .material = {a, b}, .lever_at_surface = !is_new && before.lever_at_surface};
+    *law = (pls_law){.ops = ops,
+                     .material = {a, b},
+                     .lever_at_surface = !is_new && before.lever_at_surface,
+                     .narrow = is_new ? pls_default_narrow_options() : before.narrow};
     if (values)
         memcpy(law->values, values, (size_t)pls_parameter_values(ops->parameters) * sizeof *values);
     else

@@ -2,6 +2,7 @@
 #ifndef PLS_LAW_LAW_TABLE_H
 #define PLS_LAW_LAW_TABLE_H
 
+#include <particls/contact.h>
 #include <particls/law.h>
 
 typedef struct pls_material
@@ -19,6 +20,7 @@ typedef struct pls_law
     double constants[PLS_LAW_MAX_CONSTANTS];
     double checked[PLS_LAW_MAX_CONSTANTS]; ///< the constants when the stable step was last checked
     bool lever_at_surface;                 ///< see pls_world_set_lever_at_surface
+    pls_narrow_options narrow;
 } pls_law;
 
 enum { PLS_NO_LAW = UINT16_MAX };

@@ -76,6 +76,7 @@ enum pls_body_flags {
     PLS_BODY_DRIVEN = 2,      ///< all axes prescribed: no force moves it
     PLS_BODY_SPECIAL = 4,     ///< some axes prescribed, or velocities by function: advanced one by one
     PLS_BODY_ANISOTROPIC = 8, ///< three different moments: rotation advanced one by one
+    PLS_BODY_SOLID = 16,      ///< neither a ball nor a half-space: its contacts are those of solid_list.h
 };
 
 // X(row type, column)
@@ -100,7 +101,7 @@ enum pls_body_flags {
     X("shape", PLS_U16, 1, PERSISTS, "", kind, pls_body_kind, shape, "its shape")                                                \
     X("material", PLS_U16, 1, PERSISTS | FRAME, "", kind, pls_body_kind, material, "its material")                               \
     X("flags", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, flags,                                                             \
-      "how it moves: 1 unbounded, 2 driven, 4 partly driven, 8 anisotropic")                                                     \
+      "how it moves: 1 unbounded, 2 driven, 4 partly driven, 8 anisotropic, 16 neither ball nor half-space")                     \
     X("motion", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, motion, "its prescribed motion")                                  \
     X("position", PLS_F64, 3, PERSISTS, "m", place, pls_body_place, x, "centre of mass")                                         \
     X("radius", PLS_F64, 1, PERSISTS | FRAME, "m", place, pls_body_place, radius, "bounding radius")                             \

@@ -7,6 +7,11 @@
 extern const pls_shape_ops pls_sphere_shape, pls_plane_shape, pls_box_shape, pls_capsule_shape, pls_cylinder_shape, pls_ellipsoid_shape,
     pls_superquadric_shape, pls_polyhedron_shape, pls_polygon_shape;
 
+/// A sphere or disc, whose contacts are found by centre and radius alone.
+static inline bool pls_shape_is_ball(const pls_shape *shape) { return shape->ops->sdf == pls_sphere_shape.sdf; }
+/// A half-space or half-plane.
+static inline bool pls_shape_is_plane(const pls_shape *shape) { return shape->ops->sdf == pls_plane_shape.sdf; }
+
 /// Integrals of (a + |u|)^2 over a disc and a ball of radius r [m^4, m^5]: what the ends and corners of rounded shapes add to a second moment.
 static inline double pls_disc_apart(double a, double r) { return r * r * (M_PI * (a * a + 0.25 * r * r) + 8.0 / 3.0 * a * r); }
 static inline double pls_ball_apart(double a, double r) { return M_PI * r * r * r * (4.0 / 3.0 * a * a + a * r + 4.0 / 15.0 * r * r); }

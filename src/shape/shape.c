@@ -69,6 +69,22 @@ pls_vec3 pls_shape_support(const pls_shape *shape, pls_vec3 n)
     return shape->margin > 0.0 ? pls_add(p, pls_scale(n, shape->margin)) : p;
 }
 
+size_t pls_shape_parts_near(const pls_shape *shape, pls_vec3 X, double radius, uint32_t *found, size_t room)
+{
+    size_t count = 0;
+    for (uint32_t k = 0; k < shape->part_count; ++k)
+    {
+        const pls_shape_part *p = &shape->part[k];
+        pls_vec3 own = pls_scale(pls_rotate_back(p->orientation, pls_sub(X, p->position)), 1.0 / p->scale);
+        pls_vec3 low = pls_sub(p->shape->lower, own), high = pls_sub(own, p->shape->upper);
+        pls_vec3 out = pls_vec(fmax(0.0, fmax(low.x, high.x)), fmax(0.0, fmax(low.y, high.y)), fmax(0.0, fmax(low.z, high.z)));
+        if (!(pls_length(out) * p->scale < radius)) continue;
+        if (count < room) found[count] = k;
+        ++count;
+    }
+    return count;
+}
+
 // ---- size ---------------------------------------------------------------------------------------------------------------------------------------------------
 
 static const pls_vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};

@@ -15,7 +15,7 @@ pls_contact_rate pls_contact_rate_of(const pls_world *world, size_t c)
     while (c < section->first || c >= section->first + section->count) ++section;
     pls_contact_rate t = {.i = list->row_i[c], .j = list->row_j[c]};
     const pls_body_place *p = &b->place[t.i], *q = &b->place[t.j];
-    double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius;
+    double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius, lever_j = 0.0;
     if (section->wall)
     {
         t.n = pls_scale(pls_wall_normal(&b->orientation[t.j], world->def.dimension), -1.0);
@@ -29,9 +29,10 @@ pls_contact_rate pls_contact_rate_of(const pls_world *world, size_t c)
         t.n = pls_vec(d[0] / distance, d[1] / distance, d[2] / distance);
         delta = p->radius + q->radius - distance;
         radius = p->radius * q->radius / (p->radius + q->radius);
-        t.lever_j = q->radius - 0.5 * delta;
+        lever_j = q->radius - 0.5 * delta;
     }
-    t.lever_i = p->radius - 0.5 * delta;
+    t.arm_i = pls_scale(t.n, p->radius - 0.5 * delta);
+    t.arm_j = pls_scale(t.n, -lever_j);
     t.held = section->wall || b->load[t.j].inv_mass == 0.0;
     const pls_law *law = &world->laws.law[section->law];
     const double zeros[PLS_LAW_MAX_HISTORY] = {0};
@@ -41,6 +42,48 @@ pls_contact_rate pls_contact_rate_of(const pls_world *world, size_t c)
                                .history = zeros};
     law->ops->stiffness(law->constants, &point, &t.k);
     return t;
+}
+
+pls_contact_rate pls_solid_rate_of(const pls_world *world, size_t c)
+{
+    const pls_solid_list *list = &world->solids;
+    const pls_solid_pair *pair = &list->pair[c];
+    const pls_touch *touch = &list->touch[c];
+    const pls_bodies *b = &world->bodies;
+    const pls_body_place *p = &b->place[pair->row_i], *q = &b->place[pair->row_j];
+    const double *edge = world->domain.edge, zeros[PLS_LAW_MAX_HISTORY] = {0};
+    pls_contact_rate t = {.i = pair->row_i, .j = pair->row_j, .n = touch->normal};
+    t.arm_i = pls_sub(touch->point, pls_vec(p->x, p->y, p->z));
+    t.arm_j =
+        pls_sub(touch->point, pls_vec(q->x + pair->shift[0] * edge[0], q->y + pair->shift[1] * edge[1], q->z + pair->shift[2] * edge[2]));
+    t.held = b->load[t.j].inv_mass == 0.0;
+    const pls_law *law = &world->laws.law[pair->law];
+    pls_contact_point point = {.delta = fmax(touch->delta, 0.0),
+                               .effective_radius = pls_solid_effective_radius(list, c),
+                               .effective_mass = 1.0 / (b->load[t.i].inv_mass + b->load[t.j].inv_mass),
+                               .history = zeros};
+    law->ops->stiffness(law->constants, &point, &t.k);
+    t.k.kn *= touch->weight;
+    return t;
+}
+
+void pls_root_inverse_inertia(const pls_world *world, uint32_t row, double out[6])
+{
+    const pls_body_mass *m = &world->bodies.mass[row];
+    const pls_body_orientation *o = &world->bodies.orientation[row];
+    for (int k = 0; k < 6; ++k) out[k] = 0.0;
+    if (world->def.dimension == 2)
+    {
+        out[2] = 1.0 / sqrt(m->iz);
+        return;
+    }
+    const double root[3] = {1.0 / sqrt(m->ix), 1.0 / sqrt(m->iy), 1.0 / sqrt(m->iz)};
+    for (int a = 0; a < 3; ++a)
+    {
+        pls_vec3 e = pls_rotate((pls_quat){o->w, o->x, o->y, o->z}, pls_vec(a == 0, a == 1, a == 2));
+        out[0] += root[a] * e.x * e.x, out[1] += root[a] * e.y * e.y, out[2] += root[a] * e.z * e.z;
+        out[3] += root[a] * e.x * e.y, out[4] += root[a] * e.x * e.z, out[5] += root[a] * e.y * e.z;
+    }
 }
 
 /// The stiffest contact a body's material can have with its like or another.
@@ -85,8 +128,10 @@ void pls_add_missing_contacts(const pls_world *world, uint32_t row, int coordina
     }
     for (int a = d == 2 ? 5 : 3; a < 6; ++a)
     {
-        rates->stiffness[7 * a] += per_inertia * k.kt;
-        rates->damping[7 * a] += per_inertia * k.ct;
+        // Normals of a ball go through its centre; those of other shapes pass it by.
+        bool solid = (b->kind[row].flags & PLS_BODY_SOLID) != 0;
+        rates->stiffness[7 * a] += per_inertia * (k.kt + (solid ? 0.5 * k.kn : 0.0));
+        rates->damping[7 * a] += per_inertia * (k.ct + (solid ? 0.5 * k.cn : 0.0));
     }
     rates->contacts += missing;
 }

@@ -7,10 +7,10 @@
 /// A contact as the estimate sees it.
 typedef struct pls_contact_rate
 {
-    uint32_t i, j;           ///< rows
-    bool held;               ///< no force moves j
-    pls_vec3 n;              ///< from i to j
-    double lever_i, lever_j; ///< contact point from the centres [m]
+    uint32_t i, j;         ///< rows
+    bool held;             ///< no force moves j
+    pls_vec3 n;            ///< from i to j
+    pls_vec3 arm_i, arm_j; ///< contact point from the centres [m]
     pls_contact_stiffness k;
 } pls_contact_rate;
 
@@ -22,6 +22,15 @@ typedef struct pls_body_rates
 } pls_body_rates;
 
 pls_contact_rate pls_contact_rate_of(const pls_world *world, size_t candidate);
+/// The same of a candidate of solids that touches.
+pls_contact_rate pls_solid_rate_of(const pls_world *world, size_t candidate);
+
+/// Root of the inverse tensor of inertia of a body, world frame: xx, yy, zz, xy, xz, yz [1/sqrt(kg m^2)]; 2D: only zz.
+void pls_root_inverse_inertia(const pls_world *world, uint32_t row, double out[6]);
+static inline pls_vec3 pls_symmetric_multiply(const double a[6], pls_vec3 x)
+{
+    return pls_vec(a[0] * x.x + a[3] * x.y + a[4] * x.z, a[3] * x.x + a[1] * x.y + a[5] * x.z, a[4] * x.x + a[5] * x.y + a[2] * x.z);
+}
 
 /// The moment of inertia that resists least [kg m^2].
 double pls_smallest_moment(const pls_body_mass *mass, int dimension);

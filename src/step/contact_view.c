@@ -12,7 +12,9 @@ static int by_numbers(const void *a, const void *b)
 {
     const pls_contact_entry *p = a, *q = b;
     if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
-    return p->number_j < q->number_j ? -1 : p->number_j > q->number_j;
+    if (p->number_j != q->number_j) return p->number_j < q->number_j ? -1 : 1;
+    if (p->part_i != q->part_i) return p->part_i < q->part_i ? -1 : 1;
+    return p->part_j < q->part_j ? -1 : p->part_j > q->part_j;
 }
 
 static void fill_entry(const pls_world *world, const pls_pair_section *section, size_t c, pls_contact_entry *e)
@@ -62,6 +64,44 @@ static void fill_entry(const pls_world *world, const pls_pair_section *section, 
     law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);
 }
 
+static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
+{
+    const pls_solid_list *list = &world->solids;
+    const pls_solid_pair *pair = &list->pair[c];
+    const pls_solid_memory *memory = &list->memory[c];
+    const pls_touch *touch = &list->touch[c];
+    const pls_bodies *b = &world->bodies;
+    const pls_body_place *p = &b->place[pair->row_i], *q = &b->place[pair->row_j];
+    const double *slot = list->slot + c * PLS_SOLID_SLOT, *edge = world->domain.edge;
+    pls_vec3 x = pls_vec(p->x, p->y, p->z), d = pls_sub(pls_vec(q->x, q->y, q->z), x);
+    d = pls_add(d, pls_vec(pair->shift[0] * edge[0], pair->shift[1] * edge[1], pair->shift[2] * edge[2]));
+    *e = (pls_contact_entry){.number_i = memory->number_i,
+                             .number_j = memory->number_j,
+                             .part_i = memory->part_i,
+                             .part_j = memory->part_j,
+                             .row_i = pair->row_i,
+                             .row_j = pair->row_j,
+                             .wall = (b->kind[pair->row_j].flags & PLS_BODY_UNBOUNDED) != 0,
+                             .normal = touch->normal,
+                             .point = touch->point,
+                             .force = pls_vec(slot[0], slot[1], slot[2]),
+                             .delta = touch->depth};
+    e->branch = e->wall ? pls_scale(touch->normal, pls_dot(touch->normal, pls_sub(touch->point, x)) - 0.5 * touch->depth) : d;
+
+    const pls_law *law = &world->laws.law[pair->law];
+    double mass_sum = b->load[pair->row_i].inv_mass + b->load[pair->row_j].inv_mass;
+    pls_contact_point point = {.delta = touch->delta,
+                               .effective_radius = pls_solid_effective_radius(list, c),
+                               .effective_mass = mass_sum > 0.0 ? 1.0 / mass_sum : INFINITY,
+                               .spring_squared = memory->spring[0] * memory->spring[0] + memory->spring[1] * memory->spring[1] +
+                                                 memory->spring[2] * memory->spring[2],
+                               .history = memory->history};
+    law->ops->stiffness(law->constants, &point, &e->stiffness);
+    e->stiffness.kn *= touch->weight; // of the approach; dashpots see that itself
+    point.delta = touch->energy_delta;
+    law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);
+}
+
 pls_status pls_contact_view_make(pls_world *world, pls_contact_view *view)
 {
     view->count = 0;
@@ -69,13 +109,16 @@ pls_status pls_contact_view_make(pls_world *world, pls_contact_view *view)
     if (world->memory_holds)
         return pls_fail(PLS_INVALID_ARGUMENT, "bodies or laws have changed since the last step; contacts are known again after the next");
     const pls_pair_list *list = &world->list;
-    PLS_TRY(pls_reserve(&view->entry, &view->capacity, pls_pair_list_touching(list), sizeof *view->entry, "the view of contacts"));
+    PLS_TRY(pls_reserve(&view->entry, &view->capacity, pls_pair_list_touching(list) + pls_solid_list_touching(&world->solids),
+                        sizeof *view->entry, "the view of contacts"));
     for (size_t s = 0; s < list->section_count; ++s)
     {
         const pls_pair_section *section = &list->section[s];
         for (size_t c = section->first; c < section->first + section->count; ++c)
             if (pls_pair_touches(list, c)) fill_entry(world, section, c, &view->entry[view->count++]);
     }
+    for (size_t c = 0; c < world->solids.count; ++c)
+        if (world->solids.memory[c].touches == PLS_SOLID_TOUCHES) fill_solid(world, c, &view->entry[view->count++]);
     if (view->count > 1) qsort(view->entry, view->count, sizeof *view->entry, by_numbers);
     return PLS_OK;
 }

@@ -55,6 +55,22 @@ static const pls_field contact_fields[] = {
     {"history", PLS_F64, PLS_LAW_MAX_HISTORY, PERSISTS, "", "the law's own numbers", 0, offsetof(remembered, history)},
 };
 
+static const pls_field pair_fields[] = {
+    {"body_i", PLS_U32, 1, PERSISTS | ID, "", "number of the body with the lower number (of the body, at a wall)", 0,
+     offsetof(pls_solid_memory, number_i)},
+    {"body_j", PLS_U32, 1, PERSISTS | ID, "", "number of its partner (of the wall)", 0, offsetof(pls_solid_memory, number_j)},
+    {"part_i", PLS_U32, 1, PERSISTS | ID, "", "part of a compound or a mesh, else 0", 0, offsetof(pls_solid_memory, part_i)},
+    {"part_j", PLS_U32, 1, PERSISTS | ID, "", "part of the partner", 0, offsetof(pls_solid_memory, part_j)},
+    {"touches", PLS_U32, 1, PERSISTS, "", "0 apart, 1 touches, 2 touches where a deeper contact of the same bodies acts already", 0,
+     offsetof(pls_solid_memory, touches)},
+    {"spring", PLS_F64, 3, PERSISTS, "m", "tangential spring", 0, offsetof(pls_solid_memory, spring)},
+    {"history", PLS_F64, PLS_LAW_MAX_HISTORY, PERSISTS, "", "the law's own numbers", 0, offsetof(pls_solid_memory, history)},
+    {"normal", PLS_F64, 3, PERSISTS, "", "at the last step, from i to j", 0, offsetof(pls_solid_memory, normal)},
+    {"arm", PLS_F64, 3, PERSISTS, "m", "from the centre of i to the contact point at the last step", 0, offsetof(pls_solid_memory, arm)},
+    {"warm_start", PLS_F64, PLS_PAIR_STATE, PERSISTS, "", "what contact detection starts from (narrow_phase.c)", 0,
+     offsetof(pls_solid_memory, state)},
+};
+
 static const pls_field state_fields[] = {
     {"value", PLS_F64, 1, PERSISTS | ID, "", "values of all states in order of creation", 0, 0},
 };
@@ -73,6 +89,7 @@ static const struct
     [PLS_TABLE_BODIES] = {"bodies", body_fields, sizeof body_fields / sizeof body_fields[0]},
     [PLS_TABLE_CONTACTS] = {"contacts", contact_fields, sizeof contact_fields / sizeof contact_fields[0]},
     [PLS_TABLE_STATES] = {"states", state_fields, sizeof state_fields / sizeof state_fields[0]},
+    [PLS_TABLE_PAIRS] = {"pairs", pair_fields, sizeof pair_fields / sizeof pair_fields[0]},
     [PLS_TABLE_NUMBERS] = {"numbers", number_fields, sizeof number_fields / sizeof number_fields[0]},
 };
 

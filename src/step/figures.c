@@ -63,7 +63,7 @@ pls_status pls_world_get_figures(pls_world *world, pls_world_figures *f)
     PLS_TRY(sum_bodies(world, sum));
     *f = (pls_world_figures){.bodies = world->bodies.count,
                              .touching = pls_world_contact_count(world),
-                             .listed = world->list.listed,
+                             .listed = world->list.listed + world->solids.count,
                              .list_builds = world->list.builds,
                              .skin = world->tuner.skin,
                              .energy_kinetic = sum[KINETIC],
@@ -76,7 +76,8 @@ pls_status pls_world_get_figures(pls_world *world, pls_world_figures *f)
     f->body_bytes = pls_bodies_bytes(&world->bodies) +
                     world->list.reference_capacity * (sizeof *world->list.reference + sizeof *world->list.reference_radius) +
                     (world->list.pairs.start_capacity + world->list.walls.start_capacity) * sizeof(uint32_t);
-    f->contact_bytes = pls_pair_list_bytes(&world->list) + world->memory.capacity * sizeof *world->memory.entry;
+    f->contact_bytes = pls_pair_list_bytes(&world->list) + world->memory.capacity * sizeof *world->memory.entry +
+                       pls_solid_list_bytes(&world->solids) + world->records.capacity * sizeof *world->records.entry;
     if (world->memory_holds || !world->prepared) return PLS_OK; // forces of contacts are known after a step only
     pls_contact_view view = {0};
     pls_status status = pls_contact_view_make(world, &view);

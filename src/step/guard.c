@@ -62,6 +62,13 @@ pls_status pls_guard_overlap(pls_world *world)
             if (delta > world->def.max_overlap * radius) return overlap_failure(world, list->row_i[c], list->row_j[c], delta, radius);
         }
     }
+    for (size_t c = 0; c < world->solids.count; ++c)
+    {
+        const pls_solid_pair *pair = &world->solids.pair[c];
+        if (world->solids.memory[c].touches == PLS_SOLID_APART) continue;
+        double radius = fmin(b->place[pair->row_i].radius, b->place[pair->row_j].radius), depth = world->solids.touch[c].depth;
+        if (depth > world->def.max_overlap * radius) return overlap_failure(world, pair->row_i, pair->row_j, depth, radius);
+    }
     return PLS_OK;
 }
 

@@ -115,9 +115,11 @@ static pls_status order_bodies(pls_world *world)
 
 pls_status pls_neighbours_detach(pls_world *world)
 {
-    if (!world->memory_holds && world->list.count > 0)
+    if (!world->memory_holds && (world->list.count > 0 || world->solids.count > 0))
     {
         PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, &world->memory));
+        PLS_TRY(pls_solid_list_remember(&world->solids, &world->records));
+        pls_solid_records_sort(&world->records);
         world->memory_holds = true;
     }
     world->list.stale = true;
@@ -166,6 +168,34 @@ static void set_wall_depths(pls_world *world)
     }
 }
 
+/// Leave only pairs of balls.
+static void take_out_solids(pls_near_pairs *near, const pls_bodies *bodies)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < near->count; ++k)
+        if (!pls_pair_is_solid(bodies, near->pair[k].owner, near->pair[k].partner)) near->pair[kept++] = near->pair[k];
+    near->count = kept;
+}
+
+/// Both lists anew, with what contacts remember.
+static pls_status build_lists(pls_world *world)
+{
+    pls_near_pairs near = {0};
+    const double skin = world->tuner.skin;
+    pls_status status = pls_broad_phase(&world->bodies, &world->domain, skin, &near);
+    const pls_solid_source source = {
+        .bodies = &world->bodies, .domain = &world->domain, .laws = &world->laws, .shape = world->shape_of, .near = &near, .gap = skin};
+    if (status == PLS_OK) status = pls_solid_list_build(&world->solids, &source, &world->records);
+    if (status == PLS_OK)
+    {
+        take_out_solids(&near, &world->bodies);
+        status = pls_pair_list_build(&world->list, &world->bodies, &world->domain, &world->laws, &near, skin, world->state_count > 0,
+                                     &world->memory);
+    }
+    pls_near_pairs_free(&near);
+    return status;
+}
+
 pls_status pls_neighbours_refresh(pls_world *world)
 {
     pls_pair_list *list = &world->list;
@@ -179,11 +209,11 @@ pls_status pls_neighbours_refresh(pls_world *world)
     tune_skin(world);
     fit_skin(world);
     if (world->def.reorder && list->builds % builds_per_order == 0) PLS_TRY(order_bodies(world));
-    PLS_TRY(
-        pls_pair_list_build(list, &world->bodies, &world->domain, &world->laws, world->tuner.skin, world->state_count > 0, &world->memory));
+    PLS_TRY(build_lists(world));
     set_wall_depths(world);
     world->memory_holds = false;
-    pls_contact_memory_free(&world->memory); // as large as the list itself, and idle until the next
+    pls_contact_memory_free(&world->memory); // as large as the lists themselves, and idle until the next
+    pls_solid_records_free(&world->records);
     if (world->special_stale) PLS_TRY(pls_find_specials(world));
     return PLS_OK;
 }

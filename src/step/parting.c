@@ -19,7 +19,9 @@ static int by_numbers(const void *a, const void *b)
 {
     const struct pls_parted *p = a, *q = b;
     if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
-    return p->number_j < q->number_j ? -1 : p->number_j > q->number_j;
+    if (p->number_j != q->number_j) return p->number_j < q->number_j ? -1 : 1;
+    if (p->part_i != q->part_i) return p->part_i < q->part_i ? -1 : 1;
+    return p->part_j < q->part_j ? -1 : p->part_j > q->part_j;
 }
 
 /// Tangential relative velocity in the middle of the step (what rows hold now) of two bodies that have just parted.
@@ -72,7 +74,7 @@ static struct pls_parted parted_of(const pls_world *world, const pls_pair_sectio
                                      .spring_squared = pls_dot(spring, spring),
                                      .history = history + 3};
     law->ops->energy(law->constants, &point, &normal, &shear);
-    return (struct pls_parted){b->kind[i].number, b->kind[j].number, i, j, normal + shear};
+    return (struct pls_parted){b->kind[i].number, b->kind[j].number, 0, 0, i, j, normal + shear};
 }
 
 static unsigned long long any_ended(const uint8_t *bytes, size_t count)
@@ -97,6 +99,30 @@ pls_status pls_find_parted(const pls_world *world, const pls_pair_block *block, 
     for (size_t byte = first; byte < last; ++byte)
         for (unsigned ended = list->ended[byte]; ended; ended &= ended - 1)
             found->entry[found->count++] = parted_of(world, section, byte * 8 + (size_t)__builtin_ctz(ended));
+    return PLS_OK;
+}
+
+pls_status pls_find_parted_solids(const pls_world *world, const pls_contact_input *input, const pls_solid_block *block,
+                                  pls_parted_list *found)
+{
+    const pls_solid_list *list = &world->solids;
+    for (size_t c = block->first; c < block->last; ++c)
+    {
+        const pls_solid_pair *pair = &list->pair[c];
+        const pls_solid_memory *memory = &list->memory[c];
+        if (!pair->ended) continue;
+        PLS_TRY(pls_reserve(&found->entry, &found->capacity, found->count + 1, sizeof *found->entry, "contacts that ended"));
+        const pls_law *law = &world->laws.law[pair->law];
+        const pls_vec3 spring = pls_solid_last_spring(list, input, c);
+        const pls_contact_point point = {.effective_radius = pls_solid_effective_radius(list, c),
+                                         .effective_mass = 1.0 / (input->load[pair->row_i].inv_mass + input->load[pair->row_j].inv_mass),
+                                         .spring_squared = pls_dot(spring, spring),
+                                         .history = memory->history};
+        double normal, shear;
+        law->ops->energy(law->constants, &point, &normal, &shear);
+        found->entry[found->count++] = (struct pls_parted){memory->number_i, memory->number_j, memory->part_i, memory->part_j,
+                                                           pair->row_i,      pair->row_j,      normal + shear};
+    }
     return PLS_OK;
 }
 

@@ -31,22 +31,52 @@ static pls_status contact_table(pls_world *world, pls_contact_memory *memory)
     return PLS_OK;
 }
 
+/// Records of solids in order of numbers.
+static pls_status pair_table(const pls_world *world, pls_solid_records *records)
+{
+    if (world->memory_holds)
+    {
+        PLS_TRY(pls_solid_records_reserve(records, world->records.count));
+        if (world->records.count > 0) memcpy(records->entry, world->records.entry, world->records.count * sizeof *records->entry);
+        records->count = world->records.count;
+    }
+    else
+        PLS_TRY(pls_solid_list_remember(&world->solids, records));
+    pls_solid_records_sort(records);
+    return PLS_OK;
+}
+
+/// What is read between pls_persist_save_begin and _end.
+typedef struct tables
+{
+    pls_contact_memory contacts;
+    pls_solid_records pairs;
+} tables;
+
+static void tables_free(tables *t)
+{
+    pls_contact_memory_free(&t->contacts);
+    pls_solid_records_free(&t->pairs);
+}
+
 pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
 {
     pls_persist_save_end(world);
-    pls_contact_memory *contacts = NULL;
-    PLS_TRY(pls_allocate(&contacts, 1, sizeof *contacts, "the table of contacts"));
-    pls_status status = contact_table(world, contacts);
+    tables *made = NULL;
+    PLS_TRY(pls_allocate(&made, 1, sizeof *made, "the table of contacts"));
+    pls_status status = contact_table(world, &made->contacts);
+    if (status == PLS_OK) status = pair_table(world, &made->pairs);
     if (status != PLS_OK)
     {
-        pls_contact_memory_free(contacts);
-        pls_release(&contacts);
+        tables_free(made);
+        pls_release(&made);
         return status;
     }
-    world->persisting = contacts;
+    world->persisting = made;
     *header = (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt};
     header->rows[PLS_TABLE_BODIES] = world->bodies.count;
-    header->rows[PLS_TABLE_CONTACTS] = contacts->count;
+    header->rows[PLS_TABLE_CONTACTS] = made->contacts.count;
+    header->rows[PLS_TABLE_PAIRS] = made->pairs.count;
     header->rows[PLS_TABLE_STATES] = world->value_count;
     header->rows[PLS_TABLE_NUMBERS] = world->bodies.numbers;
     return PLS_OK;
@@ -54,10 +84,10 @@ pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
 
 void pls_persist_save_end(pls_world *world)
 {
-    pls_contact_memory *contacts = world->persisting;
-    if (!contacts) return;
-    pls_contact_memory_free(contacts);
-    pls_release(&contacts);
+    tables *made = world->persisting;
+    if (!made) return;
+    tables_free(made);
+    pls_release(&made);
     world->persisting = NULL;
 }
 
@@ -88,9 +118,13 @@ pls_status pls_persist_get(pls_world *world, pls_table_kind table, const pls_fie
         if (world->bodies.numbers) memcpy(to, world->bodies.generation_of, world->bodies.numbers * size);
         return PLS_OK;
     }
-    const pls_contact_memory *contacts = world->persisting;
-    if (!contacts) return pls_fail(PLS_INVALID_ARGUMENT, "the contact table is read between pls_persist_save_begin and _end");
-    for (size_t k = 0; k < contacts->count; ++k) memcpy(to + k * size, (const char *)&contacts->entry[k] + field->offset, size);
+    const tables *made = world->persisting;
+    if (!made) return pls_fail(PLS_INVALID_ARGUMENT, "the contact tables are read between pls_persist_save_begin and _end");
+    if (table == PLS_TABLE_CONTACTS)
+        for (size_t k = 0; k < made->contacts.count; ++k)
+            memcpy(to + k * size, (const char *)&made->contacts.entry[k] + field->offset, size);
+    else
+        for (size_t k = 0; k < made->pairs.count; ++k) memcpy(to + k * size, (const char *)&made->pairs.entry[k] + field->offset, size);
     return PLS_OK;
 }
 
@@ -102,7 +136,8 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
         return pls_fail(PLS_CORRUPT, "the saved state holds %llu state values, the scene has %zu",
                         (unsigned long long)header->rows[PLS_TABLE_STATES], world->value_count);
     if (header->rows[PLS_TABLE_NUMBERS] >= PLS_NO_ROW || header->rows[PLS_TABLE_BODIES] > header->rows[PLS_TABLE_NUMBERS] ||
-        header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || !(header->dt > 0.0) || !isfinite(header->time))
+        header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || header->rows[PLS_TABLE_PAIRS] >= PLS_NO_ROW || !(header->dt > 0.0) ||
+        !isfinite(header->time))
         return pls_fail(PLS_CORRUPT, "the saved state has an impossible header");
     if (world->bodies.count > 0 && world->extent == 0.0) PLS_TRY(pls_measure_extent(world)); // the first arrangement, not the restored one
     pls_bodies *bodies = &world->bodies;
@@ -119,6 +154,9 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
     bodies->removed = numbers - rows;
     PLS_TRY(pls_contact_memory_reserve(&world->memory, (size_t)header->rows[PLS_TABLE_CONTACTS]));
     world->memory.count = (size_t)header->rows[PLS_TABLE_CONTACTS];
+    PLS_TRY(pls_solid_records_reserve(&world->records, (size_t)header->rows[PLS_TABLE_PAIRS]));
+    world->records.count = (size_t)header->rows[PLS_TABLE_PAIRS];
+    if (world->records.count > 0) memset(world->records.entry, 0, world->records.count * sizeof *world->records.entry);
     world->memory_holds = true;
     world->list.stale = true;
     world->special_stale = true;
@@ -146,8 +184,10 @@ pls_status pls_persist_put(pls_world *world, pls_table_kind table, const pls_fie
     {
         if (world->bodies.numbers) memcpy(world->bodies.generation_of, from, world->bodies.numbers * size);
     }
-    else
+    else if (table == PLS_TABLE_CONTACTS)
         for (size_t k = 0; k < world->memory.count; ++k) memcpy((char *)&world->memory.entry[k] + field->offset, from + k * size, size);
+    else
+        for (size_t k = 0; k < world->records.count; ++k) memcpy((char *)&world->records.entry[k] + field->offset, from + k * size, size);
     return PLS_OK;
 }
 
@@ -166,6 +206,21 @@ static pls_status check_body(const pls_world *world, size_t row)
     if (!isfinite(p->x + p->y + p->z + p->vx + p->vy + p->vz) || !(p->radius > 0.0))
         return pls_fail(PLS_CORRUPT, "saved body %u has a position, velocity or radius that is no number", kind->number);
     return PLS_OK;
+}
+
+static uint32_t parts_of(const pls_world *world, uint32_t number)
+{
+    const pls_bodies *b = &world->bodies;
+    if (number >= b->numbers || b->row_of[number] == PLS_NO_ROW) return 0;
+    return pls_part_count(world->shape_of[b->kind[b->row_of[number]].shape]);
+}
+
+static pls_status check_record(const pls_world *world, const pls_solid_memory *r)
+{
+    if (r->part_i < parts_of(world, r->number_i) && r->part_j < parts_of(world, r->number_j) && r->touches <= PLS_SOLID_SHADED)
+        return PLS_OK;
+    return pls_fail(PLS_CORRUPT, "a saved contact joins parts %u of body %u and %u of body %u, which are not there", r->part_i, r->number_i,
+                    r->part_j, r->number_j);
 }
 
 /// Which row each number has; what was free stays free, with its generation.
@@ -187,6 +242,7 @@ pls_status pls_persist_restore_end(pls_world *world)
             bodies->row_of[entry->number_j] == PLS_NO_ROW)
             return pls_fail(PLS_CORRUPT, "a saved contact joins bodies %u and %u, which are not there", entry->number_i, entry->number_j);
     }
+    for (size_t k = 0; k < world->records.count; ++k) PLS_TRY(check_record(world, &world->records.entry[k]));
     return pls_world_resume(world);
 }
 

@@ -19,6 +19,7 @@ enum {
     GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
     STABLE_STEPS = 4096, ///< steps between looks at the stable step
     SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
+    POSE_BLOCK = 64,     ///< solid bodies whose poses are computed at a time
     READY_GROUPS = 32,   ///< groups of rows that are finished at a time, if so many are ready
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
@@ -27,11 +28,31 @@ static pls_status finish_block(pls_world *world, size_t first, size_t last, doub
 {
     double force[4 * BODY_BLOCK] __attribute__((aligned(64))), torque[4 * BODY_BLOCK] __attribute__((aligned(64)));
     double scratch[PLS_FORCE_SCRATCH] __attribute__((aligned(64)));
-    bool forced = world->force_count > 0;
-    if (forced) PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
+    const bool solid = world->solids.count > 0, forced = world->force_count > 0 || solid;
+    if (world->force_count > 0)
+        PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
+    else if (solid)
+        memset(force, 0, (last - first) * 4 * sizeof *force), memset(torque, 0, (last - first) * 4 * sizeof *torque);
+    if (solid) pls_solid_gather(&world->solids, first, last, force, torque);
     PLS_SIMD_SELECT(pls_verlet_finish)
     (&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL, go_on, report);
     return PLS_OK;
+}
+
+pls_contact_input pls_contact_input_of(const pls_world *world, double dt)
+{
+    const pls_bodies *bodies = &world->bodies;
+    return (pls_contact_input){.place = bodies->place,
+                               .spin = bodies->spin,
+                               .load = bodies->load,
+                               .before = bodies->before,
+                               .orientation = bodies->orientation,
+                               .domain = &world->domain,
+                               .laws = &world->laws,
+                               .large = bodies->count > PLS_LARGE_WORLD,
+                               .vast = bodies->count > PLS_VAST_WORLD,
+                               .growing = world->state_count > 0,
+                               .dt = dt};
 }
 
 static void add_report(pls_drift_report *total, const pls_drift_report *part)
@@ -89,6 +110,7 @@ typedef struct share
     size_t first_block, last_block, first_group, last_group;
     size_t reached; ///< groups before this one were looked at while their forces were fresh
     pls_drift_report report;
+    pls_narrow_counts counts;
     pls_status status;
 } share;
 
@@ -172,31 +194,41 @@ static void sweep_share(sweep *s, share *mine)
     }
 }
 
+/// Contacts of solids, all of them: they are few, and each costs far more than passing a body.
+static void sweep_solids(sweep *s, share *mine)
+{
+    pls_solid_list *list = &s->world->solids;
+#pragma omp for schedule(static)
+    for (size_t b = 0; b < pls_block_count(list->row_count, POSE_BLOCK); ++b)
+        pls_solid_pose(list, &s->input, &s->world->bodies, s->world->shape_of, b * POSE_BLOCK,
+                       pls_block_end(b, POSE_BLOCK, list->row_count));
+#pragma omp for schedule(dynamic, 1)
+    for (size_t b = 0; b < list->block_count; ++b)
+    {
+        pls_solid_contacts(list, &s->input, &list->block[b], &s->world->work[mine->thread], &mine->counts);
+        if (s->input.dt > 0.0 && mine->status == PLS_OK)
+            mine->status = pls_find_parted_solids(s->world, &s->input, &list->block[b], &s->world->parted[mine->thread]);
+    }
+}
+
+static void add_counts(pls_narrow_counts *total, const pls_narrow_counts *part)
+{
+    total->queries += part->queries, total->iterations += part->iterations, total->restarts += part->restarts;
+    total->fallbacks += part->fallbacks, total->failures += part->failures;
+}
+
 /// Contacts, and forces and velocities of the end of the step: bodies are finished as soon as their last contact is known, while it is in the cache.
 /// Whatever the order, each contact is computed from bodies that are not yet finished, and each body from all of its contacts.
 static pls_status sweep_world(pls_world *world, double dt, double time, bool go_on)
 {
     pls_bodies *bodies = &world->bodies;
     const pls_pair_list *list = &world->list;
-    sweep s = {.world = world,
-               .input = {.place = bodies->place,
-                         .spin = bodies->spin,
-                         .load = bodies->load,
-                         .before = bodies->before,
-                         .orientation = bodies->orientation,
-                         .domain = &world->domain,
-                         .laws = &world->laws,
-                         .large = bodies->count > PLS_LARGE_WORLD,
-                         .vast = bodies->count > PLS_VAST_WORLD,
-                         .growing = world->state_count > 0,
-                         .dt = dt},
-               .time = time,
-               .go_on = go_on,
-               .failed_at = SIZE_MAX};
+    sweep s = {.world = world, .input = pls_contact_input_of(world, dt), .time = time, .go_on = go_on, .failed_at = SIZE_MAX};
     for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
-#pragma omp parallel if (list->block_count > SERIAL_BLOCKS || bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
+#pragma omp parallel if (list->block_count > SERIAL_BLOCKS || world->solids.block_count > 1 || bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
         share mine = share_of(world, omp_get_thread_num(), omp_get_num_threads());
+        if (world->solids.count > 0) sweep_solids(&s, &mine);
 #pragma omp for schedule(static)
         for (size_t b = 0; b < list->wall_blocks; ++b) work_block(&s, &mine, b);
         sweep_share(&s, &mine);
@@ -205,6 +237,7 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
 #pragma omp critical(pls_sweep)
         {
             add_report(&s.total, &mine.report);
+            add_counts(&world->solids.counts, &mine.counts);
             if (mine.status != PLS_OK && mine.first_block <= s.failed_at) // of several failures that of the first thread
             {
                 s.worst = mine.status;

@@ -4,7 +4,7 @@
 // M^-1 C. The largest eigenvalues of the whole are bounded from those of single bodies: a contact's energy is 1/2 k (a - b)^2 with a, b the displacements of its two
 // sides along a direction, and (a - b)^2 <= (1 + q) a^2 + (1 + 1/q) b^2 for any q > 0, so K is bounded by a matrix with one 6 x 6 block per body,
 //
-//     A_i = sum over contacts of (1 + q) (kn Jn^T Jn + kt sum over tangents Jt^T Jt),   J = (e, l n x e): displacement of the contact point along e,
+//     A_i = sum over contacts of (1 + q) (kn Jn^T Jn + kt sum over tangents Jt^T Jt),   J = (e, arm x e): displacement of the contact point along e,
 //
 // and the largest eigenvalue of M_i^-1/2 A_i M_i^-1/2 over all bodies bounds the largest of M^-1 K; the same with cn, ct. q = m_i/m_j (kept between 1/3 and 3)
 // makes it exact for two spheres. A contact with a wall has b = 0 and weight 1.
@@ -31,18 +31,18 @@ static double stable_dt(double stiffness, double damping)
     return root > 0.0 ? 2.0 / root : INFINITY;
 }
 
-/// Add weight (kn Jn^T Jn + kt sum of Jt^T Jt) to a matrix; rows of J scaled by the roots of inverse mass and moment.
-static void add_contact(double *a, int dimension, pls_vec3 n, double lever, double root_mass, double root_inertia, double kn, double kt)
+/// Add weight (kn Jn^T Jn + kt sum of Jt^T Jt) to a matrix; rows of J scaled by the roots of inverse mass and inertia.
+static void add_contact(double *a, int dimension, pls_vec3 n, pls_vec3 arm, double root_mass, const double root_inertia[6], double kn,
+                        double kt)
 {
-    const double nn[3] = {n.x, n.y, n.z};
     double row[4][6] = {{0}}; // along x, y, z and n
-    for (int e = 0; e < dimension; ++e)
+    for (int e = 0; e < 4; ++e)
     {
-        pls_vec3 axis = pls_vec(e == 0, e == 1, e == 2), turn = pls_cross(n, axis);
-        const double t[3] = {turn.x, turn.y, turn.z};
-        row[e][e] = root_mass;
-        for (int c = dimension == 2 ? 2 : 0; c < 3; ++c) row[e][3 + c] = root_inertia * lever * t[c];
-        row[3][e] = root_mass * nn[e];
+        if (e == 2 && dimension == 2) continue;
+        pls_vec3 axis = e == 3 ? n : pls_vec(e == 0, e == 1, e == 2);
+        pls_vec3 turn = pls_symmetric_multiply(root_inertia, pls_cross(arm, axis));
+        row[e][0] = root_mass * axis.x, row[e][1] = root_mass * axis.y, row[e][2] = root_mass * axis.z;
+        row[e][3] = turn.x, row[e][4] = turn.y, row[e][5] = turn.z;
     }
     for (int r = 0; r < 6; ++r)
         for (int c = 0; c < 6; ++c)
@@ -52,19 +52,36 @@ static void add_contact(double *a, int dimension, pls_vec3 n, double lever, doub
         }
 }
 
-static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, pls_body_rates *rates)
+static void add_rate(const pls_world *world, uint32_t row, const pls_contact_rate *t, const double root_inertia[6], pls_body_rates *rates)
 {
-    if (!pls_pair_touches(&world->list, entry >> 1)) return;
     const pls_bodies *b = &world->bodies;
-    pls_contact_rate t = pls_contact_rate_of(world, entry >> 1);
-    uint32_t other = row == t.i ? t.j : t.i;
+    const int d = world->def.dimension;
+    uint32_t other = row == t->i ? t->j : t->i;
     double m = b->mass[row].mass;
     double ratio = b->load[other].inv_mass > 0.0 ? fmin(fmax(m / b->mass[other].mass, 1.0 / 3.0), 3.0) : 0.0;
-    double root_mass = 1.0 / sqrt(m), root_inertia = 1.0 / sqrt(pls_smallest_moment(&b->mass[row], world->def.dimension));
-    double lever = row == t.i ? t.lever_i : t.lever_j, weight = 1.0 + ratio;
-    add_contact(rates->stiffness, world->def.dimension, t.n, lever, root_mass, root_inertia, weight * t.k.kn, weight * t.k.kt);
-    add_contact(rates->damping, world->def.dimension, t.n, lever, root_mass, root_inertia, weight * t.k.cn, weight * t.k.ct);
+    double root_mass = 1.0 / sqrt(m), weight = 1.0 + ratio;
+    pls_vec3 arm = row == t->i ? t->arm_i : t->arm_j;
+    add_contact(rates->stiffness, d, t->n, arm, root_mass, root_inertia, weight * t->k.kn, weight * t->k.kt);
+    add_contact(rates->damping, d, t->n, arm, root_mass, root_inertia, weight * t->k.cn, weight * t->k.ct);
     ++rates->contacts;
+}
+
+static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, const double root_inertia[6], pls_body_rates *rates)
+{
+    if (!pls_pair_touches(&world->list, entry >> 1)) return;
+    pls_contact_rate t = pls_contact_rate_of(world, entry >> 1);
+    add_rate(world, row, &t, root_inertia, rates);
+}
+
+static void add_solids(const pls_world *world, uint32_t row, const double root_inertia[6], pls_body_rates *rates)
+{
+    const pls_solid_list *list = &world->solids;
+    for (uint32_t k = list->start[row]; k < list->start[row + 1]; ++k)
+    {
+        if (list->memory[list->entry[k] >> 1].touches != PLS_SOLID_TOUCHES) continue;
+        pls_contact_rate t = pls_solid_rate_of(world, list->entry[k] >> 1);
+        add_rate(world, row, &t, root_inertia, rates);
+    }
 }
 
 /// A cheap bound of the largest eigenvalue, at most 1.5 % too large: the 64th root of the largest row sum of A^64 (Gershgorin), by six squarings, each of a
@@ -106,13 +123,16 @@ static pls_body_rates rates_of(const pls_world *world, uint32_t row, int coordin
 {
     const pls_pair_list *list = &world->list;
     pls_body_rates rates = {.contacts = 0};
+    double root_inertia[6];
+    pls_root_inverse_inertia(world, row, root_inertia);
     if (!world->memory_holds && list->count > 0)
     {
         for (uint32_t k = list->pairs.start[row]; k < list->pairs.start[row + 1]; ++k)
-            add_from_list(world, row, list->pairs.entry[k], &rates);
+            add_from_list(world, row, list->pairs.entry[k], root_inertia, &rates);
         for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
-            add_from_list(world, row, list->walls.entry[k], &rates);
+            add_from_list(world, row, list->walls.entry[k], root_inertia, &rates);
     }
+    if (!world->memory_holds && world->solids.count > 0) add_solids(world, row, root_inertia, &rates);
     pls_add_missing_contacts(world, row, coordination, &rates);
     return rates;
 }
@@ -181,6 +201,28 @@ static void mark_near(pls_world *world)
     }
 }
 
+/// The same for solids: their geometry of now.
+static void mark_near_solids(pls_world *world)
+{
+    pls_solid_list *list = &world->solids;
+    const pls_contact_input input = pls_contact_input_of(world, 0.0);
+    pls_solid_pose(list, &input, &world->bodies, world->shape_of, 0, list->row_count);
+    for (size_t c = 0; c < list->count; ++c)
+    {
+        const pls_solid_pair *pair = &list->pair[c];
+        double radius = fmin(world->bodies.place[pair->row_i].radius, world->bodies.place[pair->row_j].radius);
+        list->touch[c] = pls_solid_touch_now(list, &input, c);
+        list->memory[c].touches = list->touch[c].delta > -near_gap * radius ? PLS_SOLID_TOUCHES : PLS_SOLID_APART;
+    }
+}
+
+/// Contacts begin with the first forces.
+static void mark_none(pls_world *world)
+{
+    memset(world->list.touch, 0, world->list.count / 8 + 1);
+    for (size_t c = 0; c < world->solids.count; ++c) world->solids.memory[c].touches = PLS_SOLID_APART;
+}
+
 pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *out)
 {
     if (!world->prepared)
@@ -188,9 +230,10 @@ pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *out)
         PLS_TRY(pls_states_apply(world));
         PLS_TRY(pls_neighbours_refresh(world));
         mark_near(world);
+        mark_near_solids(world);
     }
     estimate(world, world->def.coordination, out);
-    if (!world->prepared) memset(world->list.touch, 0, world->list.count / 8 + 1); // contacts begin with the first forces
+    if (!world->prepared) mark_none(world);
     return PLS_OK;
 }
 
@@ -214,6 +257,7 @@ pls_status pls_choose_step(pls_world *world)
 {
     pls_step_estimate e;
     mark_near(world);
+    mark_near_solids(world);
     estimate(world, world->def.coordination, &e);
     pls_status status = PLS_OK;
     if (world->dt > e.dt && !world->def.allow_unstable)
@@ -221,7 +265,7 @@ pls_status pls_choose_step(pls_world *world)
         status = refine(world, world->def.coordination, &e);
         if (status == PLS_OK && world->dt > e.dt) status = refuse(world, &e);
     }
-    memset(world->list.touch, 0, world->list.count / 8 + 1); // contacts begin with the first forces
+    mark_none(world);
     PLS_TRY(status);
     if (world->dt == 0.0)
     {

@@ -15,8 +15,8 @@ typedef struct packed_contact
 {
     uint32_t i, j;
     float n[3];
-    float lever_i, lever_j; ///< times the roots of inverse moments
-    float root_i, root_j;   ///< roots of inverse masses, 0 where no force moves it
+    float arm_i[3], arm_j[3]; ///< contact point from the centres
+    float root_i, root_j;     ///< roots of inverse masses, 0 where no force moves it
     float normal[2], tangential[2];
 } packed_contact;
 
@@ -24,6 +24,7 @@ typedef struct whole
 {
     packed_contact *packed;
     size_t contacts, rows;
+    double (*root)[6];       ///< per row: root of the inverse inertia, 0 where no force moves it
     double (*missing)[2][2]; ///< per row, for stiffness and damping: what contacts still to come add to translation and rotation
     bool damping;            ///< which of the two is multiplied by
     int dimension;
@@ -32,25 +33,30 @@ typedef struct whole
 static void whole_free(whole *w)
 {
     pls_release(&w->packed);
+    pls_release(&w->root);
     pls_release(&w->missing);
 }
 
-static packed_contact pack(const pls_world *world, size_t candidate)
+static packed_contact pack(const pls_bodies *b, const pls_contact_rate *t)
 {
-    const pls_bodies *b = &world->bodies;
-    pls_contact_rate t = pls_contact_rate_of(world, candidate);
-    double root_i = sqrt(b->load[t.i].inv_mass), root_j = t.held ? 0.0 : sqrt(b->load[t.j].inv_mass);
-    double turn_i = root_i > 0.0 ? 1.0 / sqrt(pls_smallest_moment(&b->mass[t.i], world->def.dimension)) : 0.0;
-    double turn_j = root_j > 0.0 ? 1.0 / sqrt(pls_smallest_moment(&b->mass[t.j], world->def.dimension)) : 0.0;
-    return (packed_contact){.i = t.i,
-                            .j = t.j,
-                            .n = {(float)t.n.x, (float)t.n.y, (float)t.n.z},
-                            .lever_i = (float)(t.lever_i * turn_i),
-                            .lever_j = (float)(t.lever_j * turn_j),
+    double root_i = sqrt(b->load[t->i].inv_mass), root_j = t->held ? 0.0 : sqrt(b->load[t->j].inv_mass);
+    return (packed_contact){.i = t->i,
+                            .j = t->j,
+                            .n = {(float)t->n.x, (float)t->n.y, (float)t->n.z},
+                            .arm_i = {(float)t->arm_i.x, (float)t->arm_i.y, (float)t->arm_i.z},
+                            .arm_j = {(float)t->arm_j.x, (float)t->arm_j.y, (float)t->arm_j.z},
                             .root_i = (float)root_i,
                             .root_j = (float)root_j,
-                            .normal = {(float)t.k.kn, (float)t.k.cn},
-                            .tangential = {(float)t.k.kt, (float)t.k.ct}};
+                            .normal = {(float)t->k.kn, (float)t->k.cn},
+                            .tangential = {(float)t->k.kt, (float)t->k.ct}};
+}
+
+static void add(whole *w, const pls_bodies *b, const pls_contact_rate *t, int *contacts)
+{
+    if (b->load[t->i].inv_mass == 0.0 && b->load[t->j].inv_mass == 0.0) return; // neither moves
+    w->packed[w->contacts++] = pack(b, t);
+    ++contacts[t->i];
+    ++contacts[t->j];
 }
 
 static pls_status whole_make(const pls_world *world, int coordination, whole *w)
@@ -60,20 +66,27 @@ static pls_status whole_make(const pls_world *world, int coordination, whole *w)
     int *contacts = NULL;
     w->rows = b->count;
     w->dimension = world->def.dimension;
-    PLS_TRY(pls_allocate(&w->packed, pls_pair_list_touching(list), sizeof *w->packed, "contacts of the stable step"));
+    size_t touching = pls_pair_list_touching(list) + pls_solid_list_touching(&world->solids);
+    PLS_TRY(pls_allocate(&w->packed, touching, sizeof *w->packed, "contacts of the stable step"));
+    PLS_TRY(pls_allocate(&w->root, w->rows, sizeof *w->root, "the stable step"));
     PLS_TRY(pls_allocate(&w->missing, w->rows, sizeof *w->missing, "the stable step"));
     PLS_TRY(pls_allocate(&contacts, w->rows, sizeof *contacts, "the stable step"));
     for (size_t c = 0; c < list->count; ++c)
     {
         if (!pls_pair_touches(list, c)) continue;
-        if (b->load[list->row_i[c]].inv_mass == 0.0 && b->load[list->row_j[c]].inv_mass == 0.0) continue; // neither moves
-        w->packed[w->contacts++] = pack(world, c);
-        ++contacts[list->row_i[c]];
-        ++contacts[list->row_j[c]];
+        pls_contact_rate t = pls_contact_rate_of(world, c);
+        add(w, b, &t, contacts);
+    }
+    for (size_t c = 0; c < world->solids.count; ++c)
+    {
+        if (world->solids.memory[c].touches != PLS_SOLID_TOUCHES) continue;
+        pls_contact_rate t = pls_solid_rate_of(world, c);
+        add(w, b, &t, contacts);
     }
     for (uint32_t row = 0; row < w->rows; ++row)
     {
         if (b->load[row].inv_mass == 0.0) continue;
+        pls_root_inverse_inertia(world, row, w->root[row]);
         pls_body_rates missing = {.contacts = contacts[row]};
         pls_add_missing_contacts(world, row, coordination, &missing);
         w->missing[row][0][0] = missing.stiffness[0];
@@ -86,6 +99,8 @@ static pls_status whole_make(const pls_world *world, int coordination, whole *w)
 }
 
 static pls_vec3 vec_at(const double *x) { return pls_vec(x[0], x[1], x[2]); }
+
+static pls_vec3 vec_of(const float *a) { return pls_vec((double)a[0], (double)a[1], (double)a[2]); }
 
 static void add_at(double *y, pls_vec3 a, double s) { y[0] += s * a.x, y[1] += s * a.y, y[2] += s * a.z; }
 
@@ -100,17 +115,17 @@ static void multiply(const void *context, const double *x, double *y)
         const packed_contact *t = &w->packed[m];
         const size_t i = 6 * (size_t)t->i, j = 6 * (size_t)t->j;
         double kn = (double)t->normal[w->damping], kt = (double)t->tangential[w->damping];
-        double mi = (double)t->root_i, mj = (double)t->root_j, ri = (double)t->lever_i, rj = (double)t->lever_j;
-        pls_vec3 n = pls_vec((double)t->n[0], (double)t->n[1], (double)t->n[2]);
-        pls_vec3 turn = pls_add(pls_scale(vec_at(x + i + 3), ri), pls_scale(vec_at(x + j + 3), rj));
+        double mi = (double)t->root_i, mj = (double)t->root_j;
+        pls_vec3 n = vec_of(t->n), arm_i = vec_of(t->arm_i), arm_j = vec_of(t->arm_j);
         pls_vec3 u = pls_sub(pls_scale(vec_at(x + i), mi), pls_scale(vec_at(x + j), mj));
-        u = pls_add(u, pls_cross(turn, n));
-        pls_vec3 f = pls_add(pls_scale(u, kt), pls_scale(n, (kn - kt) * pls_dot(u, n))), torque = pls_cross(n, f);
-        if (w->dimension == 2) f.z = torque.x = torque.y = 0.0;
+        u = pls_add(u, pls_cross(pls_symmetric_multiply(w->root[t->i], vec_at(x + i + 3)), arm_i));
+        if (mj > 0.0) u = pls_sub(u, pls_cross(pls_symmetric_multiply(w->root[t->j], vec_at(x + j + 3)), arm_j));
+        pls_vec3 f = pls_add(pls_scale(u, kt), pls_scale(n, (kn - kt) * pls_dot(u, n)));
+        if (w->dimension == 2) f.z = 0.0;
         add_at(y + i, f, mi);
-        add_at(y + i + 3, torque, ri);
+        add_at(y + i + 3, pls_symmetric_multiply(w->root[t->i], pls_cross(arm_i, f)), 1.0);
         add_at(y + j, f, -mj);
-        add_at(y + j + 3, torque, rj);
+        if (mj > 0.0) add_at(y + j + 3, pls_symmetric_multiply(w->root[t->j], pls_cross(arm_j, f)), -1.0);
     }
 }
 

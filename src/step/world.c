@@ -3,6 +3,7 @@
 #include "step/world.h"
 
 #include "base/alloc.h"
+#include "shape/builtin.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -109,6 +110,9 @@ void pls_world_destroy(pls_world *world)
     pls_contact_memory_free(&world->memory);
     for (size_t k = 0; k < world->shape_count; ++k) pls_shape_free(world->shape[k].shape);
     pls_release(&world->shape);
+    pls_release(&world->shape_of);
+    pls_solid_list_free(&world->solids);
+    pls_solid_records_free(&world->records);
     pls_release(&world->group);
     pls_release(&world->motion);
     pls_release(&world->force);
@@ -141,10 +145,15 @@ pls_status pls_world_use_shape(pls_world *world, const char *name, pls_shape *sh
     if (shape->dimension != world->def.dimension)
         return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' is made for %dD, this world is %dD", name, shape->dimension,
                         world->def.dimension);
-    if (!shape->ops->unbounded && strcmp(shape->ops->name, "sphere") != 0)
-        return pls_fail(PLS_INVALID_ARGUMENT, "there is no contact detection between a '%s' and other bodies", shape->ops->name);
+    if (shape->ops->wall && world->domain.any_periodic)
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "shape '%s' is a wall made of pieces, which would end at the edges of a periodic box. Use planes, or a box that is "
+                        "not periodic",
+                        name);
     if (world->shape_count >= UINT16_MAX - 1) return pls_fail(PLS_LIMIT_EXCEEDED, "a world holds at most %d shapes", UINT16_MAX - 1);
     PLS_TRY(pls_reserve(&world->shape, &world->shape_capacity, world->shape_count + 1, sizeof *world->shape, "shapes"));
+    PLS_TRY(pls_reserve(&world->shape_of, &world->shape_of_capacity, world->shape_count + 1, sizeof *world->shape_of, "shapes"));
+    world->shape_of[world->shape_count] = shape;
     pls_shape_instance *instance = &world->shape[world->shape_count];
     *instance = (pls_shape_instance){.shape = pls_shape_keep(shape)};
     snprintf(instance->name, sizeof instance->name, "%s", name);
@@ -211,6 +220,15 @@ static void forget_contacts(pls_world *world, uint16_t a, uint16_t b)
         if (!((i == a && j == b) || (i == b && j == a))) world->memory.entry[kept++] = *entry;
     }
     world->memory.count = kept;
+    kept = 0;
+    for (size_t k = 0; k < world->records.count; ++k)
+    {
+        pls_solid_memory *entry = &world->records.entry[k];
+        uint16_t i = world->bodies.kind[world->bodies.row_of[entry->number_i]].material,
+                 j = world->bodies.kind[world->bodies.row_of[entry->number_j]].material;
+        if (!((i == a && j == b) || (i == b && j == a))) world->records.entry[kept++] = *entry;
+    }
+    world->records.count = kept;
 }
 
 pls_status pls_world_set_law(pls_world *world, pls_material_id a, pls_material_id b, const pls_law_ops *ops, const double *values)
@@ -240,6 +258,22 @@ pls_status pls_world_set_lever_at_surface(pls_world *world, pls_material_id a, p
     uint16_t index;
     PLS_TRY(find_law(world, a, b, &index));
     world->laws.law[index].lever_at_surface = at_surface;
+    return PLS_OK;
+}
+
+pls_status pls_world_set_narrow_options(pls_world *world, pls_material_id a, pls_material_id b, const pls_narrow_options *options)
+{
+    uint16_t index;
+    PLS_TRY(find_law(world, a, b, &index));
+    if (options->faces == PLS_FACES_VOLUME && !(options->face_area > 0.0 && isfinite(options->face_area)))
+        return pls_fail(PLS_INVALID_ARGUMENT, "the volume law needs face_area, an area over which the law's stiffness acts [m^2]; it is %g",
+                        options->face_area);
+    if (options->solver == PLS_SOLVER_ADMM && options->faces != PLS_FACES_POINT)
+        return pls_fail(PLS_INVALID_ARGUMENT, "solver admm gives one point per contact; faces: manifold or volume need solver depth");
+    if (!(options->tolerance > 0.0 && options->tolerance < 0.1))
+        return pls_fail(PLS_INVALID_ARGUMENT, "the solver's tolerance is %g; it must lie between 0 and 0.1", options->tolerance);
+    PLS_TRY(pls_neighbours_detach(world));
+    world->laws.law[index].narrow = *options;
     return PLS_OK;
 }
 
@@ -433,7 +467,7 @@ static pls_status check_body_def(const pls_world *world, const pls_body_def *def
 static pls_status body_mass(const pls_world *world, const pls_body_def *def, pls_body_mass *out)
 {
     const pls_shape *shape = world->shape[def->shape.index1 - 1].shape;
-    if (shape->ops->unbounded)
+    if (shape->ops->unbounded || shape->ops->wall)
     {
         *out = (pls_body_mass){INFINITY, INFINITY, INFINITY, INFINITY};
         return PLS_OK;
@@ -468,9 +502,11 @@ static uint32_t motion_flags(const pls_world *world, const pls_body_def *def, co
 {
     const pls_motion_def *m = &def->motion;
     unsigned axes = world->def.dimension == 2 ? m->axes | PLS_AXIS_Z | PLS_AXIS_RX | PLS_AXIS_RY : m->axes;
-    bool unbounded = world->shape[def->shape.index1 - 1].shape->ops->unbounded;
+    const pls_shape *shape = world->shape[def->shape.index1 - 1].shape;
+    bool unbounded = shape->ops->unbounded || shape->ops->wall;
     uint32_t flags = unbounded ? PLS_BODY_UNBOUNDED : 0;
-    if (unbounded && m->axes == 0) axes = PLS_AXIS_ALL; // a half-space without motion stands still
+    if (!pls_shape_is_ball(shape) && !pls_shape_is_plane(shape)) flags |= PLS_BODY_SOLID;
+    if (unbounded && m->axes == 0) axes = PLS_AXIS_ALL; // a wall without motion stands still
     if (axes == PLS_AXIS_ALL) flags |= PLS_BODY_DRIVEN;
     bool turns = m->angular_velocity.x != 0.0 || m->angular_velocity.y != 0.0 || m->angular_velocity.z != 0.0;
     if (m->axes && (axes != PLS_AXIS_ALL || m->function || m->about || turns)) flags |= PLS_BODY_SPECIAL;
@@ -497,8 +533,14 @@ static pls_status add_body(pls_world *world, const pls_body_def *def, pls_body_i
     const pls_shape *shape = world->shape[def->shape.index1 - 1].shape;
     double inv_mass = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED)) ? 0.0 : 1.0 / mass.mass;
     double inv_inertia = (flags & (PLS_BODY_DRIVEN | PLS_BODY_UNBOUNDED | PLS_BODY_ANISOTROPIC)) ? 0.0 : 1.0 / mass.iz;
-    bodies->place[row] =
-        (pls_body_place){def->position.x, def->position.y, def->position.z, shape->radius * def->scale, v.x, v.y, v.z, 0.0};
+    bodies->place[row] = (pls_body_place){def->position.x,
+                                          def->position.y,
+                                          def->position.z,
+                                          (flags & PLS_BODY_UNBOUNDED) ? INFINITY : shape->radius * def->scale,
+                                          v.x,
+                                          v.y,
+                                          v.z,
+                                          0.0};
     bodies->load[row] = (pls_body_load){.inv_mass = inv_mass, .inv_inertia = inv_inertia};
     bodies->spin[row] = (pls_body_spin){.wx = w.x, .wy = w.y, .wz = w.z};
     pls_quat q = pls_quat_unit(def->orientation);
@@ -547,6 +589,11 @@ pls_status pls_world_remove_body(pls_world *world, pls_body_id id)
         if (entry.number_i != number && entry.number_j != number) world->memory.entry[kept++] = entry;
     }
     world->memory.count = kept;
+    kept = 0;
+    for (size_t k = 0; k < world->records.count; ++k)
+        if (world->records.entry[k].number_i != number && world->records.entry[k].number_j != number)
+            world->records.entry[kept++] = world->records.entry[k];
+    world->records.count = kept;
     pls_bodies_remove(&world->bodies, row);
     world->special_stale = true;
     return PLS_OK;
@@ -583,7 +630,10 @@ int pls_world_dimension(const pls_world *world) { return world->def.dimension; }
 size_t pls_world_body_count(const pls_world *world) { return world->bodies.count; }
 size_t pls_world_contact_count(const pls_world *world)
 {
-    return world->memory_holds ? world->memory.count : pls_pair_list_touching(&world->list);
+    if (!world->memory_holds) return pls_pair_list_touching(&world->list) + pls_solid_list_touching(&world->solids);
+    size_t solid = 0;
+    for (size_t k = 0; k < world->records.count; ++k) solid += world->records.entry[k].touches == PLS_SOLID_TOUCHES;
+    return world->memory.count + solid;
 }
 
 const uint32_t *pls_world_rows_by_number(const pls_world *world, size_t *count)

@@ -3,6 +3,7 @@
 #define PLS_STEP_WORLD_H
 
 #include "contact/pair_list.h"
+#include "contact/solid_contact.h"
 #include "contact/sphere_contact.h"
 #include "law/law_table.h"
 #include "model/bodies.h"
@@ -67,7 +68,7 @@ typedef struct pls_skin_tuner
 /// A contact that ended in this step, and the energy it still held [J].
 struct pls_parted
 {
-    uint32_t number_i, number_j, row_i, row_j;
+    uint32_t number_i, number_j, part_i, part_j, row_i, row_j;
     double energy;
 };
 
@@ -85,6 +86,8 @@ struct pls_world
     pls_law_table laws;
     pls_shape_instance *shape;
     size_t shape_count, shape_capacity;
+    const pls_shape **shape_of; ///< the same by index alone
+    size_t shape_of_capacity;
     char (*group)[PLS_NAME_SIZE];
     size_t group_count, group_capacity;
     pls_motion_def *motion;
@@ -100,7 +103,9 @@ struct pls_world
 
     pls_pair_list list;
     pls_contact_memory memory; ///< filled when the list is about to change
-    bool memory_holds;         ///< `memory`, not the list, has the contacts (between a change of bodies and the next list)
+    pls_solid_list solids;
+    pls_solid_records records; ///< of solids, as `memory`
+    bool memory_holds;         ///< `memory` and `records`, not the lists, have the contacts (between a change of bodies and the next list)
     pls_contact_work *work;    ///< one per thread
     pls_parted_list *parted;   ///< contacts that ended in this step, one list per thread
     int work_count;
@@ -143,11 +148,15 @@ pls_status pls_neighbours_detach(pls_world *world);
 // parting.c
 /// Note what the springs of contacts of a block that ended in this step still hold, before their bodies are finished.
 pls_status pls_find_parted(const pls_world *world, const pls_pair_block *block, pls_parted_list *found);
+pls_status pls_find_parted_solids(const pls_world *world, const pls_contact_input *input, const pls_solid_block *block,
+                                  pls_parted_list *found);
 /// Book what was found.
 pls_status pls_book_parted(pls_world *world);
 void pls_parted_free(pls_world *world);
 
 // step.c
+/// What contact loops read of the world as it is.
+pls_contact_input pls_contact_input_of(const pls_world *world, double dt);
 /// Size and centre of the arrangement of now.
 pls_status pls_measure_extent(pls_world *world);
 /// Go on stepping from a restored state, without computing forces anew.

@@ -1,0 +1,42 @@
+/// @file contact.h
+/// How contacts of bodies that are not spheres are found and told to the law. Chosen per pair of materials.
+#ifndef PARTICLS_CONTACT_H
+#define PARTICLS_CONTACT_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// What the overlap of two shapes is.
+typedef enum pls_solver {
+    PLS_SOLVER_DEPTH, ///< the penetration depth: the shortest way that parts them
+    PLS_SOLVER_ADMM   ///< P1 eq. 14: the deepest point of each in the other, by ADMM. Not conservative where edges and corners overlap
+} pls_solver;
+
+/// What the law is asked with where faces are nearly parallel.
+typedef enum pls_faces {
+    PLS_FACES_POINT,    ///< the depth, at the deepest point, which jumps as faces tilt
+    PLS_FACES_MANIFOLD, ///< a smooth maximum of the thickness at the corners of the common face
+    PLS_FACES_VOLUME    ///< the volume of the overlap over `face_area`, at its centre
+} pls_faces;
+
+/// Copy `pls_default_narrow_options()` and change what you need.
+typedef struct pls_narrow_options
+{
+    pls_solver solver;
+    pls_faces faces;
+    double
+        face_area; ///< of PLS_FACES_VOLUME: the law's stiffness k [N/m] acts as k / face_area [N/m^3] on the volume [m^2]; 2D: length [m]
+    double tolerance; ///< of PLS_SOLVER_ADMM: change of the iterates, part of the bodies' size
+} pls_narrow_options;
+
+static inline pls_narrow_options pls_default_narrow_options(void)
+{
+    pls_narrow_options options = {PLS_SOLVER_DEPTH, PLS_FACES_POINT, 0.0, 1e-6};
+    return options;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,41 @@
+// narrow_phase.h -- two shapes where two bodies have them: do they touch, how deep, where, in which direction.
+//
+// One answer for all treatments: an effective overlap, which the contact law is asked with, a normal, and the point where the force acts.
+#ifndef PLS_CONTACT_NARROW_PHASE_H
+#define PLS_CONTACT_NARROW_PHASE_H
+
+#include "contact/posed.h"
+
+#include <particls/contact.h>
+
+enum { PLS_PAIR_STATE = 32 };
+
+/// What a pair remembers between steps, in body frames; all zero: nothing.
+typedef struct pls_pair_state
+{
+    double value[PLS_PAIR_STATE];
+} pls_pair_state;
+
+typedef struct pls_touch
+{
+    double delta;        ///< effective overlap, which the law is asked with; <= 0: apart [m]
+    pls_vec3 normal;     ///< unit, from A to B
+    pls_vec3 point;      ///< where the force acts, in the world [m]
+    double weight;       ///< d(delta)/d(approach): 1 but for the volume law (A/A0)
+    double energy_delta; ///< overlap at which a linear spring holds the energy of the contact; `delta` but for the volume law [m]
+    double depth;        ///< penetration depth, for guards [m]
+} pls_touch;
+
+/// What queries cost, for summary.json. One per thread, added up.
+typedef struct pls_narrow_counts
+{
+    uint64_t queries, iterations;
+    uint64_t restarts;  ///< warm start given up, solved cold
+    uint64_t fallbacks; ///< slower sure method
+    uint64_t failures;  ///< none converged: best bound used
+} pls_narrow_counts;
+
+void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state, pls_touch *out,
+                      pls_narrow_counts *counts);
+
+#endif

@@ -1,0 +1,392 @@
+// solid_contact.c -- contacts of solids, one block of candidates at a time.
+//
+//     track      do the bounding volumes of the two parts overlap? If not, nothing is remembered of them
+//     touch      the narrow phase: overlap, normal, contact point
+//     shade      of several contacts of two bodies that push in one direction at one place (seams of compounds, edges within a mesh) only the deepest counts
+//     frame      velocities at the contact point, the spring carried into the frame of now
+//     law        as for spheres, in batches
+//     store      force and torque into the candidate's own slot
+//
+// Time. Dashpots see the velocities of the end of the step, springs the displacement of the middle, as for spheres (sphere_contact_simd.c): s += dt u_t with u the relative velocity of
+// mid-step at the mid-step contact point. Spheres know that point in closed form; here it is the mean of the points (relative to each centre) of the last step and of now,
+// and the normal is the mean of the two normals, both good to second order. The spring is carried along by the smallest rotation that takes the old normal to the new one, and
+// turned about it by the angle of the pair's mean spin.
+
+#include "contact/solid_contact.h"
+
+#include <string.h>
+
+static const double shade_angle = 0.96592582628906831; ///< cosine of 15 degrees: normals that agree
+static const double shade_reach = 0.1; ///< of the smaller part's bounding radius: contact points nearer than this push at one place
+
+// ---- poses --------------------------------------------------------------------------------------------------------------------------------------------------
+
+void pls_solid_pose(pls_solid_list *list, const pls_contact_input *in, const pls_bodies *bodies, const pls_shape *const *shape,
+                    size_t first, size_t last)
+{
+    for (size_t k = first; k < last; ++k)
+    {
+        uint32_t row = list->row[k];
+        const pls_body_place *p = &in->place[row];
+        const pls_body_orientation *q = &in->orientation[row];
+        list->posed[row] =
+            pls_pose(shape[bodies->kind[row].shape], pls_vec(p->x, p->y, p->z), (pls_quat){q->w, q->x, q->y, q->z}, bodies->scale[row]);
+    }
+}
+
+static pls_vec3 shift_of(const pls_solid_pair *pair, const double edge[3])
+{
+    return pls_vec(pair->shift[0] * edge[0], pair->shift[1] * edge[1], pair->shift[2] * edge[2]);
+}
+
+static void pose_parts(const pls_solid_list *list, const pls_contact_input *in, size_t c, pls_posed *a, pls_posed *b)
+{
+    const pls_solid_pair *pair = &list->pair[c];
+    *a = pls_posed_part(&list->posed[pair->row_i], list->memory[c].part_i);
+    *b = pls_posed_part(&list->posed[pair->row_j], list->memory[c].part_j);
+    if (in->domain->any_periodic) b->position = pls_add(b->position, shift_of(pair, in->domain->edge));
+}
+
+// ---- bounding volumes -------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
+
+/// Squared distance of a point from the box that bounds a part [m^2].
+static double outside_box(const pls_posed *p, pls_vec3 X)
+{
+    const pls_vec3 own = pls_posed_own(p, X), lower = p->shape->lower, upper = p->shape->upper;
+    const double x = fmax(0.0, fmax(lower.x - own.x, own.x - upper.x)), y = fmax(0.0, fmax(lower.y - own.y, own.y - upper.y));
+    const double z = p->shape->dimension == 2 ? 0.0 : fmax(0.0, fmax(lower.z - own.z, own.z - upper.z));
+    return (x * x + y * y + z * z) * p->scale * p->scale;
+}
+
+/// Lowest point of a part's box above a half-space [m].
+static double height_of_box(const pls_posed *p, const pls_posed *plane)
+{
+    const pls_vec3 n = plane->shape->dimension == 2 ? plane->y : plane->z;
+    const pls_vec3 own = pls_posed_turn_back(p, n), lower = p->shape->lower, upper = p->shape->upper;
+    double least = fmin(own.x * lower.x, own.x * upper.x) + fmin(own.y * lower.y, own.y * upper.y);
+    if (p->shape->dimension == 3) least += fmin(own.z * lower.z, own.z * upper.z);
+    return pls_dot(n, pls_sub(p->position, plane->position)) + p->scale * least;
+}
+
+static bool bounds_overlap(const pls_posed *a, const pls_posed *b)
+{
+    if (b->shape->ops->unbounded && b->shape->part_count == 0 && !isfinite(b->shape->radius)) return height_of_box(a, b) < 0.0;
+    const pls_vec3 x = centre_of(a), y = centre_of(b), d = pls_sub(y, x);
+    const double reach = a->size + b->size;
+    if (!(pls_dot(d, d) < reach * reach)) return false;
+    return outside_box(b, x) < a->size * a->size && outside_box(a, y) < b->size * b->size;
+}
+
+// ---- touch ----------------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Has the centre of i crossed the surface of the half-space j?
+static bool behind(const pls_solid_list *list, const pls_solid_pair *pair)
+{
+    const pls_posed *plane = &list->posed[pair->row_j];
+    const pls_vec3 n = plane->shape->dimension == 2 ? plane->y : plane->z;
+    return !(pls_dot(n, pls_sub(centre_of(&list->posed[pair->row_i]), plane->position)) > 0.0);
+}
+
+static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t c, pls_narrow_counts *counts)
+{
+    pls_solid_pair *pair = &list->pair[c];
+    pls_solid_memory *memory = &list->memory[c];
+    const pls_narrow_options *options = &in->laws->law[pair->law].narrow;
+    pls_posed a, b;
+    pose_parts(list, in, c, &a, &b);
+    pair->ended = memory->touches == PLS_SOLID_TOUCHES; // until it is found to touch
+    pair->tracked = bounds_overlap(&a, &b) && !(pair->lets_go && behind(list, pair));
+    list->touch[c].delta = 0.0;
+    if (pair->tracked)
+        pls_narrow_phase(&a, &b, options, &memory->state, &list->touch[c], counts);
+    else
+        memset(&memory->state, 0, sizeof memory->state);
+}
+
+/// Is the contact of candidate c one that the deeper contact of d stands for?
+static bool shades(const pls_solid_list *list, size_t d, size_t c)
+{
+    const pls_touch *deeper = &list->touch[d], *t = &list->touch[c];
+    if (!(pls_dot(deeper->normal, t->normal) > shade_angle)) return false;
+    const pls_posed *i = &list->posed[list->pair[c].row_i], *j = &list->posed[list->pair[c].row_j];
+    double reach = shade_reach * fmin(i->size, isfinite(j->size) ? j->size : i->size);
+    pls_vec3 apart = pls_sub(deeper->point, t->point);
+    apart = pls_sub(apart, pls_scale(t->normal, pls_dot(apart, t->normal)));
+    return pls_dot(apart, apart) < reach * reach;
+}
+
+/// Which of the candidates first .. last, all of one pair of bodies, act: `next` gets their new PLS_SOLID_ state. The volume law adds up over parts, so nothing is shaded there.
+static void choose_acting(const pls_solid_list *list, const pls_contact_input *in, size_t first, size_t last, uint8_t *next)
+{
+    const bool adds_up = in->laws->law[list->pair[first].law].narrow.faces == PLS_FACES_VOLUME;
+    for (size_t c = first; c < last; ++c) next[c - first] = list->touch[c].delta > 0.0 ? PLS_SOLID_TOUCHES : PLS_SOLID_APART;
+    if (adds_up || last - first < 2) return;
+    for (size_t c = first; c < last; ++c)
+    {
+        if (next[c - first] == PLS_SOLID_APART) continue;
+        for (size_t d = first; d < last && next[c - first] == PLS_SOLID_TOUCHES; ++d)
+        {
+            if (d == c || !(list->touch[d].delta > 0.0)) continue;
+            bool deeper = list->touch[d].delta > list->touch[c].delta || (list->touch[d].delta == list->touch[c].delta && d < c);
+            if (deeper && shades(list, d, c)) next[c - first] = PLS_SOLID_SHADED;
+        }
+    }
+}
+
+// ---- frame --------------------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_vec3 of3(const double *a) { return pls_vec(a[0], a[1], a[2]); }
+static void put3(double *to, pls_vec3 a) { to[0] = a.x, to[1] = a.y, to[2] = a.z; }
+
+/// Motion of the two bodies of a candidate, j's image across the box included.
+typedef struct pair_motion
+{
+    pls_vec3 centre_i, centre_j;
+    pls_vec3 v_i, v_j, w_i, w_j;                 ///< mid-step
+    pls_vec3 end_v_i, end_v_j, end_w_i, end_w_j; ///< of the end
+} pair_motion;
+
+static pair_motion motion_of(const pls_contact_input *in, const pls_solid_pair *pair)
+{
+    const pls_body_place *p = &in->place[pair->row_i], *q = &in->place[pair->row_j];
+    const pls_body_spin *s = &in->spin[pair->row_i], *t = &in->spin[pair->row_j];
+    pair_motion m = {.centre_i = pls_vec(p->x, p->y, p->z),
+                     .centre_j = pls_vec(q->x, q->y, q->z),
+                     .v_i = pls_vec(p->vx, p->vy, p->vz),
+                     .v_j = pls_vec(q->vx, q->vy, q->vz),
+                     .w_i = pls_vec(s->wx, s->wy, s->wz),
+                     .w_j = pls_vec(t->wx, t->wy, t->wz),
+                     .end_w_i = pls_vec(s->end_x, s->end_y, s->end_z),
+                     .end_w_j = pls_vec(t->end_x, t->end_y, t->end_z)};
+    if (in->domain->any_periodic)
+    {
+        m.centre_j = pls_add(m.centre_j, shift_of(pair, in->domain->edge));
+        m.v_j = pls_add(m.v_j, shift_of(pair, in->domain->edge_rate));
+    }
+    m.end_v_i = pls_add(m.v_i, pls_vec(s->lead_x, s->lead_y, p->lead_z));
+    m.end_v_j = pls_add(m.v_j, pls_vec(t->lead_x, t->lead_y, q->lead_z));
+    return m;
+}
+
+/// The smallest rotation that takes the unit vector n to m, on a vector s at right angles to n.
+static pls_vec3 tilt(pls_vec3 s, pls_vec3 n, pls_vec3 m)
+{
+    double along = 1.0 + pls_dot(n, m);
+    if (along < 1e-6) return pls_sub(s, pls_scale(m, pls_dot(s, m))); // turned over within one step: no rotation is the smallest
+    return pls_sub(s, pls_scale(pls_add(n, m), pls_dot(m, s) / along));
+}
+
+/// s turned about the unit vector n by an angle far below a radian.
+static pls_vec3 turn_about(pls_vec3 s, pls_vec3 n, double angle)
+{
+    return pls_add(pls_scale(s, cos(angle)), pls_scale(pls_cross(n, s), sin(angle)));
+}
+
+static pls_vec3 tangential(pls_vec3 u, pls_vec3 n) { return pls_sub(u, pls_scale(n, pls_dot(u, n))); }
+
+/// Contact `k` of the batch: what the law reads. `fresh`: it did not touch at the last step.
+static void frame_contact(const pls_solid_list *list, const pls_contact_input *in, size_t c, bool fresh, pls_contact_work *work, size_t k)
+{
+    const pls_solid_pair *pair = &list->pair[c];
+    const pls_solid_memory *memory = &list->memory[c];
+    const pls_touch *t = &list->touch[c];
+    const pls_law *law = &in->laws->law[pair->law];
+    const pair_motion m = motion_of(in, pair);
+    const pls_vec3 n = t->normal, half = pls_scale(n, law->lever_at_surface ? 0.5 * t->depth : 0.0);
+    const pls_vec3 arm_i = pls_sub(pls_add(t->point, half), m.centre_i), arm_j = pls_sub(pls_sub(t->point, half), m.centre_j);
+    pls_vec3 v = pls_sub(pls_add(m.end_v_i, pls_cross(m.end_w_i, arm_i)), pls_add(m.end_v_j, pls_cross(m.end_w_j, arm_j)));
+    const double vn = pls_dot(v, n);
+
+    pls_vec3 old_n = n, mid_i = arm_i, mid_j = arm_j, spring = pls_vec(0.0, 0.0, 0.0);
+    if (!fresh)
+    {
+        // Of the middle of the step: means of the last step and of now, each from the centre as it was.
+        const pls_vec3 old_i = of3(memory->arm), shift = pls_scale(pls_sub(m.v_j, m.v_i), in->dt);
+        const pls_vec3 old_j = pls_add(pls_sub(pls_add(old_i, m.centre_i), m.centre_j), shift);
+        old_n = of3(memory->normal);
+        mid_i = pls_scale(pls_add(old_i, arm_i), 0.5), mid_j = pls_scale(pls_add(old_j, arm_j), 0.5);
+        spring = of3(memory->spring);
+    }
+    pls_vec3 mid_n = pls_add(n, old_n);
+    const double length = pls_length(mid_n);
+    mid_n = length > 1e-3 ? pls_scale(mid_n, 1.0 / length) : n;
+    pls_vec3 u = pls_sub(pls_add(m.v_i, pls_cross(m.w_i, mid_i)), pls_add(m.v_j, pls_cross(m.w_j, mid_j)));
+    const double turned = 0.5 * in->dt * pls_dot(pls_add(m.w_i, m.w_j), n);
+    pls_vec3 step = turn_about(tilt(tangential(u, mid_n), mid_n, n), n, 0.5 * turned);
+    double since = in->dt; // a contact that begins within the step has had the time since touch only
+    if (fresh && vn * in->dt > t->delta) since = t->delta / vn;
+    spring = pls_add(turn_about(tilt(spring, old_n, n), n, turned), pls_scale(step, since));
+
+    const pls_vec3 slip = tangential(v, n);
+    work->delta[k] = t->delta;
+    work->normal_velocity[k] = vn;
+    work->slip_velocity[0][k] = slip.x, work->slip_velocity[1][k] = slip.y, work->slip_velocity[2][k] = slip.z;
+    work->spring[0][k] = spring.x, work->spring[1][k] = spring.y, work->spring[2][k] = spring.z;
+    for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) work->history[h][k] = fresh ? 0.0 : memory->history[h];
+    if (law->ops->needs_effective)
+    {
+        work->effective_radius[k] = pls_solid_effective_radius(list, c);
+        work->effective_mass[k] = 1.0 / (in->load[pair->row_i].inv_mass + in->load[pair->row_j].inv_mass);
+    }
+}
+
+// ---- law and store ----------------------------------------------------------------------------------------------------------------------------------------
+
+/// Contact k of the batch into the slot and the record of candidate c.
+static void store_contact(pls_solid_list *list, const pls_contact_input *in, size_t c, const pls_contact_work *work, size_t k)
+{
+    const pls_solid_pair *pair = &list->pair[c];
+    pls_solid_memory *memory = &list->memory[c];
+    const pls_touch *t = &list->touch[c];
+    const pls_body_place *p = &in->place[pair->row_i];
+    const pls_vec3 n = t->normal, arm_i = pls_sub(t->point, pls_vec(p->x, p->y, p->z));
+    const pair_motion m = motion_of(in, pair);
+    const pls_vec3 arm_j = pls_sub(t->point, m.centre_j);
+    const pls_vec3 shear = pls_vec(work->shear_force[0][k], work->shear_force[1][k], work->shear_force[2][k]);
+    const pls_vec3 force = pls_sub(shear, pls_scale(n, work->normal_force[k]));
+    double *slot = list->slot + c * PLS_SOLID_SLOT;
+    put3(slot, force), put3(slot + 4, pls_cross(arm_i, force));
+    put3(slot + 8, pls_scale(force, -1.0)), put3(slot + 12, pls_cross(force, arm_j));
+    slot[3] = slot[11] = work->damping_power[k];
+    slot[7] = slot[15] = work->slip_work[k];
+    put3(memory->spring, pls_vec(work->spring[0][k], work->spring[1][k], work->spring[2][k]));
+    for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) memory->history[h] = work->history[h][k];
+    put3(memory->normal, n);
+    put3(memory->arm, arm_i);
+}
+
+/// Ask the law of `batch` candidates, which is the same for all of them.
+static void answer(pls_solid_list *list, const pls_contact_input *in, const uint32_t *batch, size_t count, pls_contact_work *work)
+{
+    if (count == 0) return;
+    const pls_law *law = &in->laws->law[list->pair[batch[0]].law];
+    for (size_t k = 0; k < (count + 7) / 8 * 8; ++k) // padding repeats the last
+    {
+        size_t c = batch[k < count ? k : count - 1];
+        frame_contact(list, in, c, list->memory[c].touches != PLS_SOLID_TOUCHES, work, k);
+    }
+    pls_contact_law(law, in->dt, (count + 7) / 8 * 8, work);
+    for (size_t k = 0; k < count; ++k)
+    {
+        store_contact(list, in, batch[k], work, k);
+        list->memory[batch[k]].touches = PLS_SOLID_TOUCHES;
+        list->pair[batch[k]].ended = 0;
+    }
+}
+
+static void forget(pls_solid_memory *memory)
+{
+    memset(memory->spring, 0, sizeof memory->spring);
+    memset(memory->history, 0, sizeof memory->history);
+    memset(memory->normal, 0, sizeof memory->normal);
+    memset(memory->arm, 0, sizeof memory->arm);
+}
+
+/// A contact that comes out of the shade of another goes on with that one's spring: to the two bodies it is the same contact, at another part.
+static void inherit(pls_solid_list *list, size_t first, size_t last, const uint8_t *next)
+{
+    for (size_t c = first; c < last; ++c)
+    {
+        if (next[c - first] != PLS_SOLID_TOUCHES || list->memory[c].touches != PLS_SOLID_SHADED) continue;
+        for (size_t d = first; d < last; ++d)
+        {
+            if (list->memory[d].touches != PLS_SOLID_TOUCHES || next[d - first] == PLS_SOLID_TOUCHES || !list->pair[d].ended) continue;
+            if (!(pls_dot(of3(list->memory[d].normal), list->touch[c].normal) > shade_angle)) continue;
+            memcpy(list->memory[c].spring, list->memory[d].spring, sizeof list->memory[c].spring);
+            memcpy(list->memory[c].history, list->memory[d].history, sizeof list->memory[c].history);
+            memcpy(list->memory[c].normal, list->memory[d].normal, sizeof list->memory[c].normal);
+            memcpy(list->memory[c].arm, list->memory[d].arm, sizeof list->memory[c].arm);
+            list->memory[c].touches = PLS_SOLID_TOUCHES;
+            list->pair[d].ended = 0; // it did not end, it moved
+            forget(&list->memory[d]);
+            list->memory[d].touches = next[d - first];
+            break;
+        }
+    }
+}
+
+void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *in, const pls_solid_block *block, pls_contact_work *work,
+                        pls_narrow_counts *counts)
+{
+    enum { MOST = PLS_CONTACT_BLOCK, FEW = 4096 };
+    uint32_t batch[MOST];
+    size_t taken = 0;
+    for (size_t c = block->first; c < block->last; ++c) find_touch(list, in, c, counts);
+    for (size_t first = block->first, last; first < block->last; first = last)
+    {
+        uint8_t next[FEW];
+        for (last = first + 1; last < block->last && last - first < FEW && list->pair[last].row_i == list->pair[first].row_i &&
+                               list->pair[last].row_j == list->pair[first].row_j;)
+            ++last;
+        choose_acting(list, in, first, last, next);
+        inherit(list, first, last, next);
+        for (size_t c = first; c < last; ++c)
+        {
+            if (next[c - first] == PLS_SOLID_TOUCHES)
+            {
+                if (taken == MOST || (taken > 0 && list->pair[batch[0]].law != list->pair[c].law))
+                {
+                    answer(list, in, batch, taken, work);
+                    taken = 0;
+                }
+                batch[taken++] = (uint32_t)c;
+                continue;
+            }
+            if (!list->pair[c].ended) forget(&list->memory[c]); // who ended is asked once more what its spring holds
+            list->memory[c].touches = next[c - first];
+            memset(list->slot + c * PLS_SOLID_SLOT, 0, PLS_SOLID_SLOT * sizeof *list->slot);
+        }
+    }
+    answer(list, in, batch, taken, work);
+}
+
+pls_touch pls_solid_touch_now(const pls_solid_list *list, const pls_contact_input *in, size_t c)
+{
+    pls_posed a, b;
+    pls_touch touch = {.delta = -INFINITY};
+    pls_pair_state state = {{0.0}};
+    pls_narrow_counts counts = {0};
+    pose_parts(list, in, c, &a, &b);
+    if (bounds_overlap(&a, &b)) pls_narrow_phase(&a, &b, &in->laws->law[list->pair[c].law].narrow, &state, &touch, &counts);
+    return touch;
+}
+
+void pls_solid_gather(const pls_solid_list *list, size_t first, size_t last, double *force, double *torque)
+{
+    for (size_t row = first; row < last; ++row)
+    {
+        double *f = force + 4 * (row - first), *t = torque + 4 * (row - first);
+        for (uint32_t k = list->start[row]; k < list->start[row + 1]; ++k)
+        {
+            const size_t c = list->entry[k] >> 1;
+            if (list->memory[c].touches != PLS_SOLID_TOUCHES) continue;
+            const double *slot = list->slot + c * PLS_SOLID_SLOT + (list->entry[k] & 1) * 8;
+            for (int a = 0; a < 4; ++a) f[a] += slot[a], t[a] += slot[4 + a];
+        }
+    }
+}
+
+pls_vec3 pls_solid_last_spring(const pls_solid_list *list, const pls_contact_input *in, size_t c)
+{
+    const pls_solid_memory *memory = &list->memory[c];
+    const pair_motion m = motion_of(in, &list->pair[c]);
+    const pls_vec3 n = of3(memory->normal), arm_i = of3(memory->arm), arm_j = pls_sub(pls_add(arm_i, m.centre_i), m.centre_j);
+    pls_vec3 u = pls_sub(pls_add(m.v_i, pls_cross(m.w_i, arm_i)), pls_add(m.v_j, pls_cross(m.w_j, arm_j)));
+    return pls_add(of3(memory->spring), pls_scale(tangential(u, n), 0.5 * in->dt));
+}
+
+static double equal_radius(const pls_posed *p)
+{
+    double volume = p->shape->mass.volume;
+    if (!(volume > 0.0) || !isfinite(volume)) return INFINITY; // walls
+    return p->scale * (p->shape->dimension == 2 ? sqrt(volume / M_PI) : cbrt(0.75 * volume / M_PI));
+}
+
+double pls_solid_effective_radius(const pls_solid_list *list, size_t c)
+{
+    double a = equal_radius(&list->posed[list->pair[c].row_i]), b = equal_radius(&list->posed[list->pair[c].row_j]);
+    if (!isfinite(b)) return a;
+    return isfinite(a) ? a * b / (a + b) : b;
+}

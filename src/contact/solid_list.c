@@ -1,0 +1,421 @@
+// solid_list.c -- making the list of candidates with solid bodies.
+//
+// Steps: pairs of bodies from the broad phase and against walls -> pairs of parts -> pairs that touched at the last step wherever they are now (so that their end is
+// seen and booked) -> order -> records put back by key -> gather rows.
+
+#include "contact/solid_list.h"
+
+#include "base/alloc.h"
+#include "base/sort.h"
+#include "contact/contact_memory.h"
+#include "contact/sphere_contact.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// ---- records ------------------------------------------------------------------------------------------------------------------------------------------------
+
+pls_status pls_solid_records_reserve(pls_solid_records *records, size_t count)
+{
+    return pls_reserve(&records->entry, &records->capacity, count, sizeof *records->entry, "what contacts of solids remember");
+}
+
+void pls_solid_records_free(pls_solid_records *records)
+{
+    pls_release(&records->entry);
+    memset(records, 0, sizeof *records);
+}
+
+static int compare_u32(uint32_t a, uint32_t b) { return a < b ? -1 : a > b; }
+
+static int by_key(const void *a, const void *b)
+{
+    const pls_solid_memory *p = a, *q = b;
+    int order = compare_u32(p->number_i, q->number_i);
+    if (order == 0) order = compare_u32(p->number_j, q->number_j);
+    if (order == 0) order = compare_u32(p->part_i, q->part_i);
+    return order ? order : compare_u32(p->part_j, q->part_j);
+}
+
+void pls_solid_records_sort(pls_solid_records *records)
+{
+    if (records->count > 1) qsort(records->entry, records->count, sizeof *records->entry, by_key);
+}
+
+pls_status pls_solid_list_remember(const pls_solid_list *list, pls_solid_records *records)
+{
+    size_t alive = 0;
+    for (size_t c = 0; c < list->count; ++c) alive += list->pair[c].tracked;
+    records->count = 0;
+    PLS_TRY(pls_solid_records_reserve(records, alive));
+    for (size_t c = 0; c < list->count; ++c)
+        if (list->pair[c].tracked) records->entry[records->count++] = list->memory[c];
+    return PLS_OK;
+}
+
+size_t pls_solid_list_touching(const pls_solid_list *list)
+{
+    size_t touching = 0;
+    for (size_t c = 0; c < list->count; ++c) touching += list->memory[c].touches == PLS_SOLID_TOUCHES;
+    return touching;
+}
+
+// ---- parts ----------------------------------------------------------------------------------------------------------------------------------------------------
+
+pls_posed pls_posed_part(const pls_posed *whole, uint32_t part)
+{
+    if (whole->shape->part_count == 0) return *whole;
+    const pls_shape_part *p = &whole->shape->part[part];
+    const double scale = whole->scale * p->scale;
+    return (pls_posed){.shape = p->shape,
+                       .scale = scale,
+                       .size = p->shape->radius * scale,
+                       .position = pls_posed_world(whole, p->position),
+                       .x = pls_posed_turn(whole, pls_rotate(p->orientation, pls_vec(1.0, 0.0, 0.0))),
+                       .y = pls_posed_turn(whole, pls_rotate(p->orientation, pls_vec(0.0, 1.0, 0.0))),
+                       .z = pls_posed_turn(whole, pls_rotate(p->orientation, pls_vec(0.0, 0.0, 1.0)))};
+}
+
+// ---- candidates -------------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_status missing_law(const pls_solid_source *s, uint32_t i, uint32_t j)
+{
+    const pls_bodies *b = s->bodies;
+    const char *first = s->laws->material[b->kind[i].material].name, *second = s->laws->material[b->kind[j].material].name;
+    return pls_fail(PLS_NOT_FOUND,
+                    "bodies %u and %u come close, but no contact law is given between their materials '%s' and '%s'. Add one: contact: "
+                    "[{between: [%s, %s], law: ...}]",
+                    b->kind[i].number, b->kind[j].number, first, second, first, second);
+}
+
+static pls_status room_for(pls_solid_list *list, size_t count)
+{
+    if (count <= list->capacity) return PLS_OK;
+    if (count >= UINT32_MAX / 2) return pls_fail(PLS_LIMIT_EXCEEDED, "%zu pairs of parts are more than the list can hold", count);
+    size_t capacity = list->capacity, wanted = count + count / 2 + 64;
+    PLS_TRY(pls_reallocate(&list->pair, capacity, wanted, sizeof *list->pair, "pairs of solids"));
+    PLS_TRY(pls_reallocate(&list->memory, capacity, wanted, sizeof *list->memory, "pairs of solids"));
+    PLS_TRY(pls_reallocate(&list->touch, capacity, wanted, sizeof *list->touch, "pairs of solids"));
+    PLS_TRY(pls_reallocate(&list->slot, capacity * PLS_SOLID_SLOT, wanted * PLS_SOLID_SLOT, sizeof *list->slot, "pairs of solids"));
+    list->capacity = wanted;
+    return PLS_OK;
+}
+
+/// Half-spaces may let go of bodies; a parameter of theirs says so.
+static bool lets_go(const pls_shape *shape)
+{
+    int place = shape->ops->unbounded && shape->part_count == 0 ? pls_parameter_find(shape->ops->parameters, "lets_go") : -1;
+    return place >= 0 && shape->values[place] > 0.5;
+}
+
+static pls_status add_candidate(pls_solid_list *list, const pls_solid_source *s, const pls_near_pair *pair, uint32_t part_i,
+                                uint32_t part_j)
+{
+    const pls_body_kind *i = &s->bodies->kind[pair->owner], *j = &s->bodies->kind[pair->partner];
+    uint16_t law = pls_law_table_find(s->laws, i->material, j->material);
+    if (law == PLS_NO_LAW) return missing_law(s, pair->owner, pair->partner);
+    PLS_TRY(room_for(list, list->count + 1));
+    size_t c = list->count++;
+    list->pair[c] = (pls_solid_pair){.row_i = pair->owner, .row_j = pair->partner, .law = law, .lets_go = lets_go(s->shape[j->shape])};
+    memcpy(list->pair[c].shift, pair->shift, sizeof pair->shift);
+    memset(&list->memory[c], 0, sizeof list->memory[c]);
+    list->memory[c].number_i = i->number, list->memory[c].number_j = j->number;
+    list->memory[c].part_i = part_i, list->memory[c].part_j = part_j;
+    return PLS_OK;
+}
+
+static pls_posed posed_body(const pls_solid_source *s, uint32_t row)
+{
+    const pls_body_place *p = &s->bodies->place[row];
+    const pls_body_orientation *q = &s->bodies->orientation[row];
+    return pls_pose(s->shape[s->bodies->kind[row].shape], pls_vec(p->x, p->y, p->z), (pls_quat){q->w, q->x, q->y, q->z},
+                    s->bodies->scale[row]);
+}
+
+/// All pairs of parts of two bounded bodies: parts turn with their bodies, so none is left out.
+static pls_status add_parts(pls_solid_list *list, const pls_solid_source *s, const pls_near_pair *pair)
+{
+    const pls_bodies *b = s->bodies;
+    uint32_t count_i = pls_part_count(s->shape[b->kind[pair->owner].shape]),
+             count_j = pls_part_count(s->shape[b->kind[pair->partner].shape]);
+    for (uint32_t p = 0; p < count_i; ++p)
+        for (uint32_t q = 0; q < count_j; ++q) PLS_TRY(add_candidate(list, s, pair, p, q));
+    return PLS_OK;
+}
+
+// ---- walls ----------------------------------------------------------------------------------------------------------------------------------------------------
+
+typedef struct part_numbers
+{
+    uint32_t *part;
+    size_t count, capacity;
+} part_numbers;
+
+static pls_status parts_near(const pls_posed *wall, pls_vec3 X, double radius, part_numbers *found)
+{
+    pls_vec3 own = pls_posed_own(wall, X);
+    double reach = radius / wall->scale;
+    size_t needed = pls_shape_parts_near(wall->shape, own, reach, found->part, found->capacity);
+    if (needed > found->capacity)
+    {
+        PLS_TRY(pls_reserve(&found->part, &found->capacity, needed, sizeof *found->part, "parts of a wall"));
+        needed = pls_shape_parts_near(wall->shape, own, reach, found->part, found->capacity);
+    }
+    found->count = needed;
+    return PLS_OK;
+}
+
+/// Bodies near one wall. A half-space that turns sweeps far points quickly: every body is in its list then.
+static pls_status one_wall(pls_solid_list *list, const pls_solid_source *s, uint32_t wall, part_numbers *found)
+{
+    const pls_bodies *b = s->bodies;
+    const pls_body_place *w = &b->place[wall];
+    const pls_body_spin *spin = &b->spin[wall];
+    const bool plane = !(b->kind[wall].flags & PLS_BODY_SOLID);
+    const pls_vec3 n = pls_wall_normal(&b->orientation[wall], s->domain->dimension);
+    const pls_posed posed = posed_body(s, wall);
+    double gap = s->gap;
+    if (plane && (spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0 || (b->kind[wall].flags & PLS_BODY_SPECIAL))) gap = INFINITY;
+    for (uint32_t row = 0; row < b->count; ++row)
+    {
+        const pls_body_place *p = &b->place[row];
+        if ((b->kind[row].flags & PLS_BODY_UNBOUNDED) || (plane && !(b->kind[row].flags & PLS_BODY_SOLID))) continue;
+        if (!pls_pair_matters(b, row, wall)) continue;
+        const pls_near_pair pair = {.owner = row, .partner = wall};
+        const uint32_t parts = pls_part_count(s->shape[b->kind[row].shape]);
+        if (plane)
+        {
+            double height = n.x * (p->x - w->x) + n.y * (p->y - w->y) + n.z * (p->z - w->z);
+            if (!(height < p->radius + gap)) continue;
+            for (uint32_t k = 0; k < parts; ++k) PLS_TRY(add_candidate(list, s, &pair, k, 0));
+            continue;
+        }
+        PLS_TRY(parts_near(&posed, pls_vec(p->x, p->y, p->z), p->radius + gap, found));
+        for (uint32_t k = 0; k < parts; ++k)
+            for (size_t m = 0; m < found->count; ++m) PLS_TRY(add_candidate(list, s, &pair, k, found->part[m]));
+    }
+    return PLS_OK;
+}
+
+static pls_status add_walls(pls_solid_list *list, const pls_solid_source *s)
+{
+    part_numbers found = {0};
+    pls_status status = PLS_OK;
+    for (uint32_t number = 0; status == PLS_OK && number < s->bodies->numbers; ++number)
+    {
+        uint32_t row = s->bodies->row_of[number];
+        if (row != PLS_NO_ROW && (s->bodies->kind[row].flags & PLS_BODY_UNBOUNDED)) status = one_wall(list, s, row, &found);
+    }
+    pls_release(&found.part);
+    return status;
+}
+
+// ---- records put back -------------------------------------------------------------------------------------------------------------------------------------
+
+/// The record of a key among sorted ones, or null.
+static const pls_solid_memory *find_record(const pls_solid_records *records, const pls_solid_memory *key)
+{
+    return records->count ? bsearch(key, records->entry, records->count, sizeof *records->entry, by_key) : NULL;
+}
+
+/// Candidates of pairs that touched but have left the gap within a step. `listed`: the candidates so far, sorted by key.
+static pls_status add_kept(pls_solid_list *list, const pls_solid_source *s, const pls_solid_records *records,
+                           const pls_solid_records *listed)
+{
+    const pls_bodies *b = s->bodies;
+    for (size_t k = 0; k < records->count; ++k)
+    {
+        const pls_solid_memory *record = &records->entry[k];
+        if (record->touches == PLS_SOLID_APART || find_record(listed, record)) continue;
+        pls_near_pair pair = {.owner = b->row_of[record->number_i], .partner = b->row_of[record->number_j]};
+        if (pair.owner == PLS_NO_ROW || pair.partner == PLS_NO_ROW || !pls_pair_matters(b, pair.owner, pair.partner)) continue;
+        const pls_body_place *p = &b->place[pair.owner], *q = &b->place[pair.partner];
+        const double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z};
+        for (int a = 0; a < 3; ++a) pair.shift[a] = pls_nearest_image(d[a], s->domain->edge[a]);
+        PLS_TRY(add_candidate(list, s, &pair, record->part_i, record->part_j));
+    }
+    return PLS_OK;
+}
+
+static pls_status find_kept(pls_solid_list *list, const pls_solid_source *s, const pls_solid_records *records)
+{
+    bool any = false;
+    for (size_t k = 0; k < records->count; ++k) any = any || records->entry[k].touches != PLS_SOLID_APART;
+    if (!any) return PLS_OK;
+    pls_solid_records listed = {0};
+    pls_status status = pls_solid_records_reserve(&listed, list->count);
+    if (status == PLS_OK)
+    {
+        if (list->count > 0) memcpy(listed.entry, list->memory, list->count * sizeof *listed.entry);
+        listed.count = list->count;
+        pls_solid_records_sort(&listed);
+        status = add_kept(list, s, records, &listed);
+    }
+    pls_solid_records_free(&listed);
+    return status;
+}
+
+static void put_back(pls_solid_list *list, const pls_solid_records *records)
+{
+    for (size_t c = 0; c < list->count; ++c)
+    {
+        const pls_solid_memory *record = find_record(records, &list->memory[c]);
+        if (!record) continue;
+        list->memory[c] = *record;
+        list->pair[c].tracked = 1;
+    }
+}
+
+// ---- order ----------------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Candidates as they were found, to be sorted.
+typedef struct found_pair
+{
+    uint32_t lower, upper, part_i, part_j;
+    pls_solid_pair pair;
+    uint32_t number_i, number_j;
+} found_pair;
+
+static int by_rows(const void *a, const void *b)
+{
+    const found_pair *p = a, *q = b;
+    int order = compare_u32(p->lower, q->lower);
+    if (order == 0) order = compare_u32(p->upper, q->upper);
+    if (order == 0) order = compare_u32(p->part_i, q->part_i);
+    return order ? order : compare_u32(p->part_j, q->part_j);
+}
+
+static pls_status order_candidates(pls_solid_list *list)
+{
+    found_pair *found = NULL;
+    PLS_TRY(pls_allocate(&found, list->count, sizeof *found, "ordering pairs of solids"));
+    for (size_t c = 0; c < list->count; ++c)
+    {
+        const pls_solid_pair *p = &list->pair[c];
+        const pls_solid_memory *m = &list->memory[c];
+        found[c] = (found_pair){.lower = p->row_i < p->row_j ? p->row_i : p->row_j,
+                                .upper = p->row_i < p->row_j ? p->row_j : p->row_i,
+                                .part_i = m->part_i,
+                                .part_j = m->part_j,
+                                .pair = *p,
+                                .number_i = m->number_i,
+                                .number_j = m->number_j};
+    }
+    if (list->count > 1) qsort(found, list->count, sizeof *found, by_rows);
+    for (size_t c = 0; c < list->count; ++c)
+    {
+        list->pair[c] = found[c].pair;
+        memset(&list->memory[c], 0, sizeof list->memory[c]);
+        list->memory[c].number_i = found[c].number_i, list->memory[c].number_j = found[c].number_j;
+        list->memory[c].part_i = found[c].part_i, list->memory[c].part_j = found[c].part_j;
+    }
+    pls_release(&found);
+    return PLS_OK;
+}
+
+static bool same_bodies(const pls_solid_list *list, size_t a, size_t b)
+{
+    return list->pair[a].row_i == list->pair[b].row_i && list->pair[a].row_j == list->pair[b].row_j;
+}
+
+static pls_status cut_blocks(pls_solid_list *list)
+{
+    list->block_count = 0;
+    for (size_t first = 0, last; first < list->count; first = last)
+    {
+        last = first + PLS_SOLID_BLOCK < list->count ? first + PLS_SOLID_BLOCK : list->count;
+        while (last < list->count && same_bodies(list, last - 1, last)) ++last;
+        PLS_TRY(pls_reserve(&list->block, &list->block_capacity, list->block_count + 1, sizeof *list->block, "blocks of solids"));
+        list->block[list->block_count++] = (pls_solid_block){(uint32_t)first, (uint32_t)last};
+    }
+    return PLS_OK;
+}
+
+// ---- gather rows ------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Of a body's entries, in order of the partner's number: entries of one partner are in order of parts already.
+static pls_status order_row(const pls_solid_list *list, uint32_t *entry, size_t n)
+{
+    uint32_t *keys = NULL;
+    if (n < 2) return PLS_OK;
+    PLS_TRY(pls_allocate(&keys, n, sizeof *keys, "gather rows of solids"));
+    for (size_t k = 0; k < n; ++k)
+    {
+        const pls_solid_memory *m = &list->memory[entry[k] >> 1];
+        keys[k] = (entry[k] & 1) ? m->number_i : m->number_j;
+    }
+    pls_status status = pls_radix_sort_u32(keys, entry, n);
+    pls_release(&keys);
+    return status;
+}
+
+static pls_status gather_rows(pls_solid_list *list, size_t rows)
+{
+    PLS_TRY(pls_reserve(&list->start, &list->start_capacity, rows + 2, sizeof *list->start, "gather rows of solids"));
+    PLS_TRY(pls_reserve(&list->entry, &list->entry_capacity, 2 * list->count, sizeof *list->entry, "gather rows of solids"));
+    memset(list->start, 0, (rows + 2) * sizeof *list->start);
+    for (size_t c = 0; c < list->count; ++c) ++list->start[list->pair[c].row_i + 2], ++list->start[list->pair[c].row_j + 2];
+    for (size_t row = 2; row < rows + 2; ++row) list->start[row] += list->start[row - 1];
+    for (size_t c = 0; c < list->count; ++c)
+    {
+        list->entry[list->start[list->pair[c].row_i + 1]++] = (uint32_t)(2 * c);
+        list->entry[list->start[list->pair[c].row_j + 1]++] = (uint32_t)(2 * c + 1);
+    }
+    PLS_TRY(pls_reserve(&list->row, &list->row_capacity, rows, sizeof *list->row, "rows of solids"));
+    list->row_count = 0;
+    for (uint32_t row = 0; row < rows; ++row)
+    {
+        if (list->start[row + 1] == list->start[row]) continue;
+        list->row[list->row_count++] = row;
+        PLS_TRY(order_row(list, list->entry + list->start[row], list->start[row + 1] - list->start[row]));
+    }
+    return pls_reserve(&list->posed, &list->posed_capacity, rows, sizeof *list->posed, "poses of solids");
+}
+
+// ---- the whole --------------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_status build(pls_solid_list *list, const pls_solid_source *s, const pls_solid_records *records)
+{
+    for (size_t k = 0; k < s->near->count; ++k)
+        if (pls_pair_is_solid(s->bodies, s->near->pair[k].owner, s->near->pair[k].partner)) PLS_TRY(add_parts(list, s, &s->near->pair[k]));
+    PLS_TRY(add_walls(list, s));
+    PLS_TRY(find_kept(list, s, records));
+    PLS_TRY(order_candidates(list));
+    put_back(list, records);
+    PLS_TRY(cut_blocks(list));
+    PLS_TRY(gather_rows(list, s->bodies->count));
+    if (list->count > 0) memset(list->slot, 0, list->count * PLS_SOLID_SLOT * sizeof *list->slot);
+    if (list->count > 0) memset(list->touch, 0, list->count * sizeof *list->touch);
+    return PLS_OK;
+}
+
+pls_status pls_solid_list_build(pls_solid_list *list, const pls_solid_source *source, const pls_solid_records *records)
+{
+    list->count = list->block_count = list->row_count = 0;
+    bool any = false;
+    for (size_t row = 0; row < source->bodies->count && !any; ++row) any = (source->bodies->kind[row].flags & PLS_BODY_SOLID) != 0;
+    if (!any) return PLS_OK;
+    pls_status status = build(list, source, records);
+    if (status != PLS_OK) list->count = list->block_count = list->row_count = 0;
+    return status;
+}
+
+size_t pls_solid_list_bytes(const pls_solid_list *list)
+{
+    return list->capacity * (sizeof *list->pair + sizeof *list->memory + sizeof *list->touch + PLS_SOLID_SLOT * sizeof *list->slot) +
+           list->block_capacity * sizeof *list->block + list->entry_capacity * sizeof *list->entry;
+}
+
+void pls_solid_list_free(pls_solid_list *list)
+{
+    pls_release(&list->pair);
+    pls_release(&list->memory);
+    pls_release(&list->touch);
+    pls_release(&list->slot);
+    pls_release(&list->block);
+    pls_release(&list->start);
+    pls_release(&list->entry);
+    pls_release(&list->posed);
+    pls_release(&list->row);
+    memset(list, 0, sizeof *list);
+}
