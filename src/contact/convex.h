@@ -18,12 +18,12 @@ typedef struct pls_convex
     pls_vec3 (*support)(const void *self,
                         pls_vec3 n); ///< the core's point furthest along n (not zero, not always of length one), in the world
     const void *self;
-    pls_vec3 centre;      ///< a point that moves with the body, inside [m]
-    pls_quat orientation; ///< body to world; unit also in 2D
-    double size;          ///< diameter, roughly [m]: the measure of all tolerances
-    double margin;        ///< of rounding [m]
-    bool polytope;        ///< the core is one: depths are exact after finitely many support points
-    int dimension;        ///< 2 (all z = 0) or 3
+    pls_vec3 centre;  ///< a point that moves with the body, inside [m]
+    pls_vec3 axis[3]; ///< the body's, in the world; also in 2D
+    double size;      ///< diameter, roughly [m]: the measure of all tolerances
+    double margin;    ///< of rounding [m]
+    bool polytope;    ///< the core is one: depths are exact after finitely many support points
+    int dimension;    ///< 2 (all z = 0) or 3
 } pls_convex;
 
 typedef struct pls_depth

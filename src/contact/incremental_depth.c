@@ -142,6 +142,15 @@ pls_depth pls_depth_cold(const pls_convex *a, const pls_convex *b)
 
 static pls_vec3 vec_of(const double v[3]) { return pls_vec(v[0], v[1], v[2]); }
 
+static pls_vec3 turn(const pls_convex *c, pls_vec3 v)
+{
+    return pls_add(pls_add(pls_scale(c->axis[0], v.x), pls_scale(c->axis[1], v.y)), pls_scale(c->axis[2], v.z));
+}
+static pls_vec3 turn_back(const pls_convex *c, pls_vec3 v)
+{
+    return pls_vec(pls_dot(c->axis[0], v), pls_dot(c->axis[1], v), pls_dot(c->axis[2], v));
+}
+
 static void put(double to[3], pls_vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
 static void recall(const pls_convex *a, const pls_convex *b, const pls_depth_state *state, pls_simplex *s)
@@ -149,8 +158,8 @@ static void recall(const pls_convex *a, const pls_convex *b, const pls_depth_sta
     s->count = state->size[0] == a->size && state->size[1] == b->size ? (int)state->count : 0;
     for (int k = 0; k < s->count; ++k)
     {
-        s->point[k].a = pls_add(a->centre, pls_rotate(a->orientation, vec_of(state->point_a[k])));
-        s->point[k].b = pls_add(b->centre, pls_rotate(b->orientation, vec_of(state->point_b[k])));
+        s->point[k].a = pls_add(a->centre, turn(a, vec_of(state->point_a[k])));
+        s->point[k].b = pls_add(b->centre, turn(b, vec_of(state->point_b[k])));
         s->point[k].stored = k;
     }
 }
@@ -160,12 +169,12 @@ static void remember(const pls_convex *a, const pls_convex *b, const pls_simplex
 {
     pls_depth_state old = *state;
     *state = (pls_depth_state){.known = 1.0, .delta = d->delta, .size = {a->size, b->size}, .count = s->count < 3 ? s->count : 3};
-    put(state->normal, pls_rotate_back(a->orientation, d->normal));
+    put(state->normal, turn_back(a, d->normal));
     for (int k = 0; k < (int)state->count; ++k)
     {
         int from = s->point[k].stored;
-        put(state->point_a[k], from >= 0 ? vec_of(old.point_a[from]) : pls_rotate_back(a->orientation, pls_sub(s->point[k].a, a->centre)));
-        put(state->point_b[k], from >= 0 ? vec_of(old.point_b[from]) : pls_rotate_back(b->orientation, pls_sub(s->point[k].b, b->centre)));
+        put(state->point_a[k], from >= 0 ? vec_of(old.point_a[from]) : turn_back(a, pls_sub(s->point[k].a, a->centre)));
+        put(state->point_b[k], from >= 0 ? vec_of(old.point_b[from]) : turn_back(b, pls_sub(s->point[k].b, b->centre)));
     }
 }
 
@@ -173,7 +182,7 @@ static void remember(const pls_convex *a, const pls_convex *b, const pls_simplex
 static bool from_state(const pls_convex *a, const pls_convex *b, const pls_depth_state *state, pls_simplex *s, pls_depth *d)
 {
     recall(a, b, state, s);
-    d->normal = pls_unit(pls_rotate(a->orientation, vec_of(state->normal)));
+    d->normal = pls_unit(turn(a, vec_of(state->normal)));
     d->delta = state->delta;
     if (d->delta < 0.0)
     {

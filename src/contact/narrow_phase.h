@@ -35,7 +35,12 @@ typedef struct pls_narrow_counts
     uint64_t failures;  ///< none converged: best bound used
 } pls_narrow_counts;
 
+/// One contact. The answer depends on poses, options and state only. Half-spaces come as B.
+/// With the default solver and PLS_FACES_POINT, `delta` is the penetration depth, or minus the distance, and the two points of the surfaces are
+/// point +- delta/2 normal (+: of A). Pairs further apart than PLS_NARROW_FAR may get any bound of their distance beyond that.
 void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state, pls_touch *out,
                       pls_narrow_counts *counts);
+
+#define PLS_NARROW_FAR 0.15 ///< of the smaller bounding radius: beyond this gap distances are bounds only
 
 #endif

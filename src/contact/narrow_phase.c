@@ -1,0 +1,403 @@
+// narrow_phase.c -- which solver serves a pair of shapes, and what to do when it does not converge.
+//
+// Shapes are of seven kinds (`kind`), pairs of kinds have a solver each (`table`). All solve one problem: with support functions h the overlap along n is
+// F(n) = h_A(n) + h_B(-n); the penetration depth is its least value over unit n, and in a gap minus the distance. They differ in what they need:
+//
+//   ball on anything     one SDF call: F is least where B's surface is nearest to the ball's centre
+//   anything on a plane  one support point
+//   with polytopes       GJK on shapes pushed apart, warm (incremental_depth.c); the expanding polytope when cold, deep, or GJK stalls
+//   smooth on smooth     Newton on the sphere of normals (smooth_depth.c); when it stalls, BFGS; then the expanding polytope
+//   SDFs alone           BFGS on one point between the surfaces, then alternating projections (sdf_depth.c), then the expanding polytope on support points that follow from
+//                        the SDF. What won last is tried first
+//   not convex           BFGS from the deepest of a grid of points in the overlap of the bounding boxes: a place where the two surfaces face each other,
+//                        so `delta` is right for that place; that no other place is deeper is only as certain as the grid is fine
+//
+// A warm start that fails is tried cold (`restarts`), a solver that does not converge gives over to the next (`fallbacks`), and when none converges the least F found
+// is taken, which never is less than the depth (`failures`).
+
+#include "contact/narrow_phase.h"
+
+#include "contact/convex.h"
+#include "contact/sdf_depth.h"
+
+#include <string.h>
+
+/// What a pair remembers, as places in its state.
+enum {
+    WINNER = 0, ///< enum winner
+    NORMAL = 1, ///< in A's frame, 3
+    DELTA = 4,  ///< [m]
+    OWN = 5,    ///< what the winner needs: `pls_depth_state` from its `size`, or `pls_sdf_state`
+    ADMM = 8    ///< 24, for that solver alone
+};
+enum winner { NOTHING, INCREMENTAL, NEWTON, BFGS, PROJECTIONS, EXPANDING };
+
+static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
+
+typedef struct query
+{
+    const pls_posed *a, *b;
+    double *state; ///< PLS_PAIR_STATE
+    pls_narrow_counts *counts;
+} query;
+
+typedef pls_depth solver(const query *q);
+
+// ---- shapes as convex sets -------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_vec3 core_support(const void *self, pls_vec3 n)
+{
+    const pls_posed *p = self;
+    return pls_posed_world(p, p->shape->ops->support(p->shape, pls_posed_turn_back(p, n)));
+}
+
+static pls_vec3 support_from_sdf(const void *self, pls_vec3 n) { return pls_posed_support(self, pls_unit(n)); }
+
+static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
+
+static pls_convex convex_of(const pls_posed *p)
+{
+    const bool alone = !p->shape->ops->support;
+    return (pls_convex){.support = alone ? support_from_sdf : core_support,
+                        .self = p,
+                        .centre = centre_of(p),
+                        .axis = {p->x, p->y, p->z},
+                        .size = 2.0 * p->size,
+                        .margin = alone ? 0.0 : p->shape->margin * p->scale,
+                        .polytope = p->shape->polytope != NULL,
+                        .dimension = p->shape->dimension};
+}
+
+static pls_vec3 unit_or_x(pls_vec3 d)
+{
+    double length = pls_length(d);
+    return length > 0.0 ? pls_scale(d, 1.0 / length) : pls_vec(1.0, 0.0, 0.0);
+}
+
+static pls_vec3 line_of_centres(const query *q) { return unit_or_x(pls_sub(centre_of(q->b), centre_of(q->a))); }
+
+// ---- the state --------------------------------------------------------------------------------------------------------------------------------------------------
+
+static enum winner last_winner(const query *q) { return (enum winner)q->state[WINNER]; }
+
+static pls_vec3 recalled_normal(const query *q)
+{
+    const double *n = q->state + NORMAL;
+    return pls_unit(pls_posed_turn(q->a, pls_vec(n[0], n[1], n[2])));
+}
+
+static void remember(const query *q, enum winner winner, const pls_depth *d)
+{
+    pls_vec3 n = pls_posed_turn_back(q->a, d->normal);
+    q->state[WINNER] = winner;
+    q->state[NORMAL] = n.x, q->state[NORMAL + 1] = n.y, q->state[NORMAL + 2] = n.z;
+    q->state[DELTA] = d->delta;
+}
+
+static void forget(const query *q) { memset(q->state, 0, PLS_PAIR_STATE * sizeof *q->state); }
+
+static void count(const query *q, int iterations, const pls_depth *d)
+{
+    q->counts->iterations += (uint64_t)iterations;
+    q->counts->failures += !d->converged;
+}
+
+static pls_depth depth_of(const pls_overlap *o)
+{
+    return (pls_depth){
+        .delta = o->delta, .normal = o->normal, .on_a = o->on_a, .on_b = o->on_b, .iterations = o->iterations, .converged = o->converged};
+}
+
+/// By far apart along the last normal: then that is all there is to know.
+static bool is_far(const query *q, pls_depth *out)
+{
+    if (last_winner(q) == NOTHING) return false;
+    pls_vec3 n = recalled_normal(q), a = pls_posed_support(q->a, n), b = pls_posed_support(q->b, pls_scale(n, -1.0));
+    double F = pls_dot(n, pls_sub(a, b));
+    if (!(F < -far_apart * fmin(q->a->size, q->b->size))) return false;
+    *out = (pls_depth){.delta = F, .normal = n, .on_a = a, .on_b = b, .converged = true};
+    return true;
+}
+
+// ---- closed forms -----------------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_vec3 ball_centre(const pls_posed *p) { return pls_posed_world(p, p->shape->polytope->vertex[0]); }
+static double ball_radius(const pls_posed *p) { return p->shape->margin * p->scale; }
+
+static pls_depth ball_ball(const query *q)
+{
+    pls_vec3 a = ball_centre(q->a), b = ball_centre(q->b), d = pls_sub(b, a), n = unit_or_x(d);
+    double ra = ball_radius(q->a), rb = ball_radius(q->b);
+    return (pls_depth){.delta = ra + rb - pls_length(d),
+                       .normal = n,
+                       .on_a = pls_add(a, pls_scale(n, ra)),
+                       .on_b = pls_sub(b, pls_scale(n, rb)),
+                       .converged = true};
+}
+
+/// Exact for a centre outside of B; inside as exact as the SDF is there. On a ridge of the SDF, where its gradient may be anything up to nothing: away from B's centre.
+static pls_depth ball_any(const query *q)
+{
+    pls_vec3 c = ball_centre(q->a), g = pls_posed_gradient(q->b, c);
+    double phi = pls_posed_sdf(q->b, c), length = pls_length(g), radius = ball_radius(q->a);
+    pls_vec3 n = length > 0.5 ? pls_scale(g, -1.0 / length) : unit_or_x(pls_sub(centre_of(q->b), c));
+    return (pls_depth){.delta = radius - phi,
+                       .normal = n,
+                       .on_a = pls_add(c, pls_scale(n, radius)),
+                       .on_b = pls_add(c, pls_scale(n, phi)),
+                       .converged = true};
+}
+
+static pls_depth any_ball(const query *q)
+{
+    const query swapped = {q->b, q->a, q->state, q->counts};
+    pls_depth d = ball_any(&swapped), out = d;
+    out.normal = pls_scale(d.normal, -1.0);
+    out.on_a = d.on_b, out.on_b = d.on_a;
+    return out;
+}
+
+/// For shapes that are not convex the support point comes from the SDF at a distance, and the depth is right to 2.5 % of the size.
+static pls_depth on_plane(const query *q)
+{
+    pls_vec3 up = q->b->shape->dimension == 2 ? q->b->y : q->b->z, n = pls_scale(up, -1.0), a = pls_posed_support(q->a, n);
+    double height = pls_dot(up, pls_sub(a, q->b->position));
+    return (pls_depth){.delta = -height, .normal = n, .on_a = a, .on_b = pls_sub(a, pls_scale(up, height)), .converged = true};
+}
+
+// ---- iterations -------------------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_depth expand(const query *q)
+{
+    const pls_convex a = convex_of(q->a), b = convex_of(q->b);
+    pls_depth d = pls_depth_cold(&a, &b);
+    count(q, d.iterations, &d);
+    if (d.converged)
+        remember(q, EXPANDING, &d);
+    else
+        forget(q);
+    return d;
+}
+
+static pls_depth incremental(const query *q)
+{
+    pls_depth d;
+    if (is_far(q, &d)) return d;
+    const pls_convex a = convex_of(q->a), b = convex_of(q->b);
+    pls_depth_state own;
+    memcpy(&own, q->state, sizeof own);
+    d = pls_depth_warm(&a, &b, &own);
+    memcpy(q->state, &own, sizeof own);
+    count(q, d.iterations, &d);
+    return d;
+}
+
+/// With curvature on both sides. BFGS is right where Newton has met a flat place.
+static bool bfgs(const query *q, pls_depth *d);
+
+static pls_depth newton(const query *q)
+{
+    pls_depth d;
+    pls_overlap o;
+    if (is_far(q, &d)) return d;
+    const bool known = last_winner(q) != NOTHING;
+    pls_smooth_depth(q->a, q->b, known ? recalled_normal(q) : line_of_centres(q), &o);
+    int iterations = o.iterations;
+    if (known && !o.converged)
+    {
+        ++q->counts->restarts;
+        pls_smooth_depth(q->a, q->b, line_of_centres(q), &o);
+        iterations += o.iterations;
+    }
+    d = depth_of(&o);
+    if (d.converged)
+    {
+        count(q, iterations, &d);
+        remember(q, NEWTON, &d);
+        return d;
+    }
+    ++q->counts->fallbacks;
+    forget(q);
+    return bfgs(q, &d) ? d : expand(q);
+}
+
+enum { BFGS_STEPS = 10, PROJECTION_STEPS = 60, GRID_STEPS = 40 };
+
+static void recall_bfgs(const query *q, pls_sdf_state *own)
+{
+    const double *s = q->state + OWN;
+    *own = (pls_sdf_state){.x = {s[0], s[1], s[2]}};
+    memcpy(own->inverse, s + 3, sizeof own->inverse);
+}
+
+static void remember_bfgs(const query *q, const pls_sdf_state *own, const pls_depth *d)
+{
+    double *s = q->state + OWN;
+    remember(q, BFGS, d);
+    s[0] = own->x.x, s[1] = own->x.y, s[2] = own->x.z;
+    memcpy(s + 3, own->inverse, sizeof own->inverse);
+}
+
+/// Between the surfaces, on the line of centres: where both SDFs are equal.
+static pls_vec3 middle_of(const query *q)
+{
+    pls_vec3 low = centre_of(q->a), high = centre_of(q->b);
+    for (int k = 0; k < 20; ++k)
+    {
+        pls_vec3 x = pls_scale(pls_add(low, high), 0.5);
+        if (pls_posed_sdf(q->a, x) < pls_posed_sdf(q->b, x))
+            low = x;
+        else
+            high = x;
+    }
+    return pls_scale(pls_add(low, high), 0.5);
+}
+
+static bool bfgs(const query *q, pls_depth *d)
+{
+    pls_sdf_state own = {.x = {0.0, 0.0, 0.0}};
+    pls_overlap o;
+    if (last_winner(q) == BFGS) recall_bfgs(q, &own);
+    pls_sdf_depth_bfgs(q->a, q->b, middle_of(q), &own, BFGS_STEPS, &o);
+    q->counts->iterations += (uint64_t)o.iterations;
+    *d = depth_of(&o);
+    if (!o.converged) return false;
+    remember_bfgs(q, &own, d);
+    return true;
+}
+
+static bool projections(const query *q, const pls_depth *start, pls_depth *d)
+{
+    pls_overlap o;
+    pls_sdf_depth_projections(q->a, q->b, start->normal, start->delta, start->on_b, PROJECTION_STEPS, &o);
+    q->counts->iterations += (uint64_t)o.iterations;
+    *d = depth_of(&o);
+    if (!o.converged) return false;
+    remember(q, PROJECTIONS, d);
+    return true;
+}
+
+static pls_depth from_sdfs(const query *q)
+{
+    pls_depth d, other;
+    if (bfgs(q, &d)) return d;
+    ++q->counts->fallbacks;
+    if (projections(q, &d, &other)) return other;
+    ++q->counts->fallbacks;
+    return expand(q);
+}
+
+// ---- shapes that are not convex ---------------------------------------------------------------------------------------------------------------------------------
+
+static void bounds_of(const pls_posed *p, double lower[3], double upper[3])
+{
+    pls_vec3 half = pls_scale(pls_sub(p->shape->upper, p->shape->lower), 0.5 * p->scale);
+    pls_vec3 middle = pls_posed_world(p, pls_scale(pls_add(p->shape->upper, p->shape->lower), 0.5));
+    const double m[3] = {middle.x, middle.y, middle.z}, x[3] = {p->x.x, p->x.y, p->x.z}, y[3] = {p->y.x, p->y.y, p->y.z},
+                 z[3] = {p->z.x, p->z.y, p->z.z};
+    for (int k = 0; k < 3; ++k)
+    {
+        double reach = fabs(x[k]) * half.x + fabs(y[k]) * half.y + fabs(z[k]) * half.z;
+        lower[k] = m[k] - reach, upper[k] = m[k] + reach;
+    }
+}
+
+/// The point of a grid over the overlap of the bounding boxes (or the gap between them) where phi_A + phi_B is least.
+static pls_vec3 deepest_of_grid(const query *q)
+{
+    enum { SIDE = 6 };
+    double la[3], ua[3], lb[3], ub[3], best = INFINITY;
+    bounds_of(q->a, la, ua);
+    bounds_of(q->b, lb, ub);
+    pls_vec3 deepest = centre_of(q->a);
+    const int layers = q->a->shape->dimension == 2 ? 1 : SIDE;
+    for (int k = 0; k < SIDE * SIDE * layers; ++k)
+    {
+        const int at[3] = {k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)};
+        double x[3];
+        for (int c = 0; c < 3; ++c)
+        {
+            double low = fmax(la[c], lb[c]), high = fmin(ua[c], ub[c]);
+            x[c] = layers == 1 && c == 2 ? q->a->position.z : low + (at[c] + 0.5) / SIDE * (high - low);
+        }
+        pls_vec3 X = pls_vec(x[0], x[1], x[2]);
+        double f = pls_posed_sdf(q->a, X) + pls_posed_sdf(q->b, X);
+        if (f < best) best = f, deepest = X;
+    }
+    return deepest;
+}
+
+static pls_depth from_grid(const query *q)
+{
+    pls_sdf_state own = {.x = {0.0, 0.0, 0.0}};
+    pls_overlap o = {.converged = false};
+    if (last_winner(q) == BFGS)
+    {
+        recall_bfgs(q, &own);
+        pls_sdf_depth_bfgs(q->a, q->b, own.x, &own, BFGS_STEPS, &o);
+        q->counts->restarts += !o.converged;
+    }
+    int iterations = o.iterations;
+    if (!o.converged)
+    {
+        own = (pls_sdf_state){.x = {0.0, 0.0, 0.0}};
+        pls_sdf_depth_bfgs(q->a, q->b, deepest_of_grid(q), &own, GRID_STEPS, &o);
+        iterations += o.iterations;
+    }
+    pls_depth d = depth_of(&o);
+    count(q, iterations, &d);
+    if (o.converged)
+        remember_bfgs(q, &own, &d);
+    else
+        forget(q);
+    return d;
+}
+
+// ---- the table --------------------------------------------------------------------------------------------------------------------------------------------------
+
+enum kind { BALL, POLYTOPE, SMOOTH, SUPPORT, SDF, CONCAVE, HALF_SPACE, KINDS };
+
+static enum kind kind_of(const pls_shape *s)
+{
+    if (s->ops->unbounded) return HALF_SPACE;
+    if (!s->convex) return CONCAVE;
+    if (s->polytope) return s->polytope->vertex_count == 1 ? BALL : POLYTOPE;
+    if (!s->ops->support) return SDF;
+    return s->ops->smooth && s->ops->support_gradient ? SMOOTH : SUPPORT;
+}
+
+// clang-format off
+static solver *const table[KINDS][KINDS] = {
+//   B:           BALL       POLYTOPE     SMOOTH       SUPPORT      SDF        CONCAVE    HALF_SPACE
+/* A */
+[BALL]       = {ball_ball, ball_any,    ball_any,    ball_any,    ball_any,  ball_any,  on_plane},
+[POLYTOPE]   = {any_ball,  incremental, incremental, incremental, from_sdfs, from_grid, on_plane},
+[SMOOTH]     = {any_ball,  incremental, newton,      incremental, from_sdfs, from_grid, on_plane},
+[SUPPORT]    = {any_ball,  incremental, incremental, incremental, from_sdfs, from_grid, on_plane},
+[SDF]        = {any_ball,  from_sdfs,   from_sdfs,   from_sdfs,   from_sdfs, from_grid, on_plane},
+[CONCAVE]    = {any_ball,  from_grid,   from_grid,   from_grid,   from_grid, from_grid, on_plane},
+[HALF_SPACE] = {NULL}, // as B only
+};
+// clang-format on
+
+static void as_touch(const pls_depth *d, pls_touch *out)
+{
+    *out = (pls_touch){.delta = d->delta,
+                       .normal = d->normal,
+                       .point = pls_scale(pls_add(d->on_a, d->on_b), 0.5),
+                       .weight = 1.0,
+                       .energy_delta = d->delta,
+                       .depth = d->delta};
+}
+
+void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state, pls_touch *out,
+                      pls_narrow_counts *counts)
+{
+    const query q = {a, b, state->value, counts};
+    ++counts->queries;
+    (void)options;
+    pls_depth d = table[kind_of(a->shape)][kind_of(b->shape)](&q);
+    as_touch(&d, out);
+    // options->faces != PLS_FACES_POINT: pls_faces_touch(a, b, &d, options, out) goes here; where it gives false the point stands.
+    // options->solver == PLS_SOLVER_ADMM: pls_admm_depth(a, b, options->tolerance, state->value + ADMM, &overlap) goes in place of the table.
+}
