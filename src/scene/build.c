@@ -91,6 +91,17 @@ static const pls_scene_contact *find_contact(const pls_scene *scene, int i, int 
     return common;
 }
 
+static pls_status set_narrow_options(pls_builder *b, const pls_scene_contact *contact, size_t i, size_t j)
+{
+    pls_narrow_options options = pls_default_narrow_options();
+    const char *faces = pls_node_get(contact->node, "faces")->text;
+    options.solver = strcmp(pls_node_get(contact->node, "solver")->text, "admm") == 0 ? PLS_SOLVER_ADMM : PLS_SOLVER_DEPTH;
+    options.faces = strcmp(faces, "volume") == 0 ? PLS_FACES_VOLUME : strcmp(faces, "manifold") == 0 ? PLS_FACES_MANIFOLD : PLS_FACES_POINT;
+    options.face_area = pls_scene_number(contact->node, "face_area", 0.0);
+    options.tolerance = pls_scene_number(contact->node, "tolerance", options.tolerance);
+    return pls_world_set_narrow_options(b->world, b->materials[i], b->materials[j], &options);
+}
+
 static pls_status set_law(pls_builder *b, const pls_scene_contact *contact, size_t i, size_t j)
 {
     double values[3 * PLS_MAX_PARAMETERS];
@@ -107,6 +118,7 @@ static pls_status set_law(pls_builder *b, const pls_scene_contact *contact, size
     pls_status status = pls_world_set_law(b->world, b->materials[i], b->materials[j], contact->ops, values);
     bool at_surface = strcmp(pls_node_get(contact->node, "lever")->text, "surface") == 0;
     if (status == PLS_OK) status = pls_world_set_lever_at_surface(b->world, b->materials[i], b->materials[j], at_surface);
+    if (status == PLS_OK) status = set_narrow_options(b, contact, i, j);
     return pls_node_context(status, contact->node, "contact");
 }
 

@@ -186,6 +186,16 @@ static const pls_key keys[] = {
     {"contact", "lever", PLS_KEY_WORD, 0, 0, "contact_point|surface", NULL, "", "contact_point", ANY,
      "where the velocities of touching grains are taken: at the one point where the force acts (energy is booked exactly), or at each "
      "grain's own surface (P1 eq. 15b, LAMMPS)"},
+    {"contact", "solver", PLS_KEY_WORD, 0, 0, "depth|admm", NULL, "", "depth", ANY,
+     "overlap of shapes that are not spheres: the penetration depth, or P1 eq. 14 by ADMM (not conservative where edges and corners "
+     "overlap)"},
+    {"contact", "faces", PLS_KEY_WORD, 0, 0, "point|manifold|volume", NULL, "", "point", ANY,
+     "where faces lie on each other: the force acts at the deepest point, at a smooth mean of the corners of the common face, or is the "
+     "volume of the overlap times k / face_area, at its centre"},
+    {"contact", "face_area", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m^2", NULL, POSITIVE,
+     "area over which the stiffness of the law acts with `faces: volume` (2D: length [m])"},
+    {"contact", "tolerance", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "1e-6", 0, 0.1,
+     "of `solver: admm`: change of its iterates, part of the bodies' size"},
 
     {"gravity", "gravity", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m/s^2", NULL, ANY, "acceleration of every free body"},
     {"field_force", "field", PLS_KEY_SECTION, REQUIRED, 0, NULL, "field", "", NULL, ANY, "a field of forces"},
