@@ -18,10 +18,11 @@ extern "C" {
 
 /// What a row of a table of parameters stands for. Only numbers take places in the array of values; the rest comes to a shape by `pls_shape_input`.
 enum {
-    PLS_PARAMETER_NUMBER = 0, ///< a number or a vector
-    PLS_PARAMETER_POINTS,     ///< a list of points: `points` and `point_count`
-    PLS_PARAMETER_PATH,       ///< the name of a file: `path`
-    PLS_PARAMETER_SHAPES      ///< other shapes with their places: `parts` and `part_count`
+    PLS_PARAMETER_NUMBER = 0,  ///< a number or a vector
+    PLS_PARAMETER_POINTS,      ///< a list of points: `points` and `point_count`
+    PLS_PARAMETER_FLAT_POINTS, ///< a list of points of the x-y plane, in 3D too: the same with z = 0
+    PLS_PARAMETER_PATH,        ///< the name of a file: `path`
+    PLS_PARAMETER_SHAPES       ///< other shapes with their places: `parts` and `part_count`
 };
 
 /// One parameter. Tables end with a null name. A parameter is one number; vectors are three parameters in the library and one list of
@@ -37,7 +38,7 @@ typedef struct pls_parameter
     double maximum;      ///< largest allowed value
     bool open_minimum;   ///< the minimum itself is not allowed
     int components;      ///< 0 or 1: a number; 3: a vector
-    int kind;            ///< PLS_PARAMETER_NUMBER unless it says otherwise; the other kinds take no place and have no default and no range
+    int kind; ///< PLS_PARAMETER_NUMBER unless it says otherwise; the other kinds take no place and have no range and no default; `initial` PLS_REQUIRED: must be given
 } pls_parameter;
 
 /// Values taken by the whole table (vectors count three).

@@ -36,14 +36,17 @@ typedef struct pls_polytope
     const uint32_t *neighbour;
 } pls_polytope;
 
-/// What a shape is made from besides its table of numbers.
+/// A shape as a part of another one: x_whole = position + scale * (orientation turns X), X in the part's own frame.
 typedef struct pls_shape_part
 {
     const pls_shape *shape; ///< lives as long as the whole
     pls_vec3 position;      ///< of its frame in the frame of the whole [m]
-    pls_quat orientation;
+    pls_quat orientation;   ///< of length one
     double scale;
 } pls_shape_part;
+
+/// A tree of boxes about the parts of a shape, by which those near a point are found.
+typedef struct pls_part_tree pls_part_tree;
 
 typedef struct pls_shape_input
 {
@@ -65,8 +68,8 @@ typedef struct pls_shape_ops
     const pls_parameter *parameters;
     bool in_2d, in_3d; ///< where the shape may be used
     bool unbounded;    ///< extends to infinity (a half-space): never moves by forces, has no mass
-    bool wall;         ///< a surface (a mesh, a polyline): never moves by forces, has no mass
-    bool convex;       ///< with any numbers; a shape that is so with some says it by `is_convex`
+    bool wall;   ///< of finite size, but a surface without an inside: never moves by forces, has no mass; its SDF may be nowhere negative
+    bool convex; ///< with any numbers; a shape that is so with some says it by `is_convex`
     bool smooth; ///< its surface is twice differentiable with curvature everywhere: contact by Newton's method on the sphere of normals
 
     /// Check what the table cannot, and make what the other functions need (null and no data where numbers do). `*data` is released by `release`.
@@ -95,6 +98,9 @@ typedef struct pls_shape_ops
     pls_status (*mass_properties)(const pls_shape *shape, pls_mass_properties *out);
     /// Density relative to the material's; null: 1.
     double (*density)(const pls_shape *shape, pls_vec3 X);
+    /// The shapes that this one is the union of, each touched by itself; null: the shape itself is its one part. They lie in what `prepare` made. Parts of parts are
+    /// no parts: whoever has parts made of parts tells of the innermost.
+    const pls_shape_part *(*parts)(const pls_shape *shape, size_t *count);
 } pls_shape_ops;
 
 /// A shape with its numbers. Made by `pls_shape_make`; to be read only.
@@ -103,9 +109,9 @@ struct pls_shape
     const pls_shape_ops *ops;
     unsigned users; ///< who keep it
     int dimension;
-    double values[3 * PLS_MAX_PARAMETERS]; ///< as the table of parameters says
-    void *data;                            ///< what `prepare` made
-    double size;                           ///< how far it reaches from the origin, roughly [m]
+    const double *values; ///< as the table of parameters says
+    void *data;           ///< what `prepare` made
+    double size;          ///< how far it reaches from the origin, roughly [m]
     bool convex;
     double margin;                ///< [m]
     const pls_polytope *polytope; ///< or null
@@ -114,8 +120,9 @@ struct pls_shape
     pls_mass_properties mass;     ///< as measured, in the shape's frame
     pls_vec3 moments;             ///< principal moments about the centre of mass; 2D: only z
     pls_quat principal;           ///< turns principal axes into the shape's axes
-    const pls_shape_part *part;   ///< convex parts it is made of, in its frame; null: it is its own only part
-    size_t part_count;
+    const pls_shape_part *part;   ///< what it is the union of, in an order in which neighbours lie together; null: itself
+    size_t part_count;            ///< 0: the shape itself is its one part
+    pls_part_tree *tree;          ///< over the parts; null without
 };
 
 /// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.
@@ -133,9 +140,6 @@ static inline pls_vec3 pls_shape_from_body(const pls_shape *shape, pls_vec3 X)
     return pls_add(pls_rotate(shape->principal, X), shape->mass.centre);
 }
 
-/// Parts whose bounds come within `radius` of X (in the shape's frame) [m], in order: the first `room` numbers go to `found`; returns how many there are.
-size_t pls_shape_parts_near(const pls_shape *shape, pls_vec3 X, double radius, uint32_t *found, size_t room);
-
 /// Signed distance, negative inside [m]. All these take and give points in the shape's own frame.
 double pls_shape_sdf(const pls_shape *shape, pls_vec3 X);
 /// By the shape's function or central differences.
@@ -144,6 +148,27 @@ pls_vec3 pls_shape_gradient(const pls_shape *shape, pls_vec3 X);
 pls_vec3 pls_shape_support(const pls_shape *shape, pls_vec3 n);
 /// The point of the surface that is nearest.
 pls_vec3 pls_shape_nearest(const pls_shape *shape, pls_vec3 X);
+/// Radius of a sphere about X that holds the shape, the smallest or a little more [m].
+double pls_shape_reach(const pls_shape *shape, pls_vec3 X);
+/// `count` points of the surface, evenly spread: none of the surface is further from one of them than about the distance of neighbours. The same points each time.
+/// INVALID_ARGUMENT for unbounded shapes.
+pls_status pls_shape_surface_nodes(const pls_shape *shape, size_t count, pls_vec3 *nodes);
+
+/// @name Parts
+/// @{
+/// The parts whose bounding boxes come within `radius` of X, in rising order. Returns how many there are; `part` takes the first `capacity` of their numbers, so a second
+/// call with more room gets them all. Allocates nothing, takes O(log n + found). 0 for shapes without parts.
+size_t pls_shape_parts_near(const pls_shape *shape, pls_vec3 X, double radius, uint32_t *part, size_t capacity);
+/// From the frame of the whole to the part's own, lengths included, and back.
+static inline pls_vec3 pls_part_from_whole(const pls_shape_part *part, pls_vec3 X)
+{
+    return pls_scale(pls_rotate_back(part->orientation, pls_sub(X, part->position)), 1.0 / part->scale);
+}
+static inline pls_vec3 pls_part_to_whole(const pls_shape_part *part, pls_vec3 X)
+{
+    return pls_add(part->position, pls_scale(pls_rotate(part->orientation, X), part->scale));
+}
+/// @}
 
 #ifdef __cplusplus
 }

@@ -176,7 +176,7 @@ static pls_status initial_state(const pls_builder *b, const pls_scene_state *sta
     PLS_TRY(pls_build_state_body(b, state, copy, &index));
     if (state->initial || state->target == PLS_STATE_FREE) return PLS_OK;
     double scale = body_scale(b, (size_t)state->body, index);
-    double radius = b->scene->shapes[b->scene->bodies[state->body].shape].made->radius;
+    double radius = pls_points_shape(b->scene, &b->scene->bodies[state->body], &b->points[state->body], index)->made->radius;
     *value = state->target == PLS_STATE_RADIUS ? scale * radius : scale;
     return PLS_OK;
 }

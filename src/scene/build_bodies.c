@@ -26,31 +26,11 @@ static pls_quat turn_onto(pls_vec3 from, pls_vec3 to, pls_vec3 spare)
     return pls_quat_unit((pls_quat){w, v.x, v.y, v.z});
 }
 
-static pls_quat turn_about(pls_vec3 axis, double angle)
-{
-    double s = sin(angle / 2.0);
-    pls_vec3 a = pls_unit(axis);
-    return (pls_quat){cos(angle / 2.0), a.x * s, a.y * s, a.z * s};
-}
-
 static pls_quat read_orientation(const pls_scene *scene, const pls_node *body)
 {
-    const pls_node *turn = pls_node_get(body, "orientation");
-    pls_vec3 x = pls_vec(1, 0, 0), y = pls_vec(0, 1, 0), z = pls_vec(0, 0, 1);
-    if (pls_node_get(body, "normal"))
-    {
-        pls_vec3 normal = pls_unit(pls_scene_vector(body, "normal"));
-        return scene->dimension == 2 ? turn_onto(y, normal, z) : turn_onto(z, normal, x);
-    }
-    if (!turn) return pls_quat_identity();
-    if (turn->kind == PLS_NODE_SCALAR) return turn_about(z, turn->number);
-    if (turn->kind == PLS_NODE_MAP)
-    {
-        bool given = pls_node_get(turn, "axis") && scene->dimension == 3;
-        return turn_about(given ? pls_scene_vector(turn, "axis") : z, pls_scene_number(turn, "angle", 0.0));
-    }
-    pls_quat q = {turn->child[0]->number, turn->child[1]->number, turn->child[2]->number, turn->child[3]->number};
-    return pls_quat_unit(q);
+    if (!pls_node_get(body, "normal")) return pls_scene_turn(scene, body);
+    const pls_vec3 x = pls_vec(1, 0, 0), y = pls_vec(0, 1, 0), z = pls_vec(0, 0, 1), normal = pls_unit(pls_scene_vector(body, "normal"));
+    return scene->dimension == 2 ? turn_onto(y, normal, z) : turn_onto(z, normal, x);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------------------
@@ -97,7 +77,7 @@ static unsigned driven_axes(const pls_scene *scene, const pls_node *motion)
 static pls_status plan_motion(const pls_builder *b, entry_plan *plan)
 {
     const pls_node *node = plan->body->node;
-    bool unbounded = b->scene->shapes[plan->body->shape].ops->unbounded;
+    bool unbounded = pls_scene_choice_shape(b->scene, plan->body, 0)->ops->unbounded;
     pls_motion_def *motion = &plan->def.motion;
     plan->driven = pls_node_get(node, "motion");
     motion->axes = locked_axes(pls_node_get(node, "lock"));
@@ -155,22 +135,22 @@ static pls_status initial_velocity(const entry_plan *plan, const pls_points *poi
 }
 
 /// With a mass but no moments of inertia the body is as if its density were uniform: I = m (I1 / V1) s^2 with the shape's own V1, I1.
-static pls_status uniform_inertia(const pls_builder *b, const entry_plan *plan, pls_body_def *def)
+static void uniform_inertia(const pls_shape *shape, pls_body_def *def)
 {
-    if (isnan(def->mass) || !isnan(def->inertia.z)) return PLS_OK;
-    const pls_shape *shape = b->scene->shapes[plan->body->shape].made;
+    if (isnan(def->mass) || !isnan(def->inertia.z)) return;
     def->inertia = pls_scale(shape->moments, def->mass / shape->mass.volume * def->scale * def->scale);
-    return PLS_OK;
 }
 
 static pls_status add_body(pls_builder *b, const entry_plan *plan, const pls_points *points, size_t k, pls_body_id *id)
 {
+    const pls_scene_shape *shape = pls_points_shape(b->scene, plan->body, points, k);
     pls_body_def def = plan->def;
+    def.shape = b->shapes[shape - b->scene->shapes];
     def.position = points->position[k];
     if (points->scale) def.scale = points->scale[k];
     if (points->orientation) def.orientation = points->orientation[k];
     PLS_TRY(initial_velocity(plan, points, k, &def));
-    PLS_TRY(uniform_inertia(b, plan, &def));
+    uniform_inertia(shape->made, &def);
     if (plan->motion) PLS_TRY(pls_build_motion_context(b, plan->driven, plan->motion, &def.motion));
     return pls_world_add_body(b->world, &def, id);
 }
@@ -179,7 +159,6 @@ static pls_status plan_entry(const pls_builder *b, entry_plan *plan)
 {
     const pls_node *node = plan->body->node;
     plan->def = pls_default_body_def();
-    plan->def.shape = b->shapes[plan->body->shape];
     plan->def.material = b->materials[plan->body->material];
     plan->def.orientation = read_orientation(b->scene, node);
     plan->def.scale = pls_scene_number(node, "scale", 1.0);

@@ -31,6 +31,8 @@ static const char *const names[COLUMN_COUNT] = {"x",  "y",  "z",  "radius", "sca
 typedef struct table
 {
     const char *path;
+    const pls_scene *scene;
+    const pls_scene_body *body;
     int dimension;
     char *at; ///< rest of the text
     int line;
@@ -137,10 +139,12 @@ static pls_status allocate_rows(const table *t, pls_points *points, size_t rows)
     return PLS_OK;
 }
 
-static pls_status keep_row(const table *t, const double *v, double radius, double scale, pls_points *points, size_t row)
+static pls_status keep_row(const table *t, const double *v, pls_points *points, size_t row)
 {
+    const double scale = pls_scene_number(t->body->node, "scale", 1.0);
     points->position[row] = pls_vec(v[COLUMN_X], v[COLUMN_Y], v[COLUMN_Z]);
-    if (points->scale) points->scale[row] = t->has[COLUMN_RADIUS] ? v[COLUMN_RADIUS] / radius : v[COLUMN_SCALE] * scale;
+    if (points->scale)
+        points->scale[row] = t->has[COLUMN_RADIUS] ? v[COLUMN_RADIUS] / pls_points_radius(t->scene, t->body, row) : v[COLUMN_SCALE] * scale;
     if (points->velocity) points->velocity[row] = pls_vec(v[COLUMN_VX], v[COLUMN_VY], v[COLUMN_VZ]);
     if (points->angular_velocity) points->angular_velocity[row] = pls_vec(v[COLUMN_WX], v[COLUMN_WY], v[COLUMN_WZ]);
     if (!points->orientation) return PLS_OK;
@@ -151,7 +155,7 @@ static pls_status keep_row(const table *t, const double *v, double radius, doubl
     return PLS_OK;
 }
 
-static pls_status read_table(table *t, double radius, double scale, pls_points *points)
+static pls_status read_table(table *t, pls_points *points)
 {
     PLS_TRY(read_header(t));
     size_t rows = 0;
@@ -162,23 +166,23 @@ static pls_status read_table(table *t, double radius, double scale, pls_points *
     {
         double values[COLUMN_COUNT];
         PLS_TRY(read_row(t, line, values));
-        PLS_TRY(keep_row(t, values, radius, scale, points, points->count));
+        PLS_TRY(keep_row(t, values, points, points->count));
         ++points->count;
     }
     if (points->count == 0) return pls_fail(PLS_SCENE, "%s: the table holds no bodies", t->path);
     return PLS_OK;
 }
 
-pls_status pls_points_csv(const pls_scene *scene, const pls_node *csv, double radius, double scale, pls_points *points)
+pls_status pls_points_csv(const pls_scene *scene, const pls_scene_body *body, const pls_node *csv, pls_points *points)
 {
     const pls_node *file = pls_node_get(csv, "file");
-    table t = {.path = file->text, .dimension = scene->dimension};
+    table t = {.path = file->text, .scene = scene, .body = body, .dimension = scene->dimension};
     char *text;
     size_t size;
     pls_status status = pls_read_file(file->text, &text, &size);
     if (status != PLS_OK) return pls_node_context(status, file, "the table");
     t.at = text;
-    status = memchr(text, '\0', size) ? pls_fail(PLS_SCENE, "%s: not a text file", t.path) : read_table(&t, radius, scale, points);
+    status = memchr(text, '\0', size) ? pls_fail(PLS_SCENE, "%s: not a text file", t.path) : read_table(&t, points);
     pls_release(&text);
     return status;
 }

@@ -1,6 +1,10 @@
-// generators.c -- regular arrangements of bodies.
+// generators.c -- regular arrangements of bodies, and what is drawn at random for the bodies of any arrangement: shapes and orientations.
+//
+// Draws are keyed by the seed and the number of the body within its entry, so they depend on nothing else.
 
 #include "scene/generators.h"
+
+#include "base/random.h"
 
 #include <string.h>
 
@@ -13,6 +17,7 @@ void pls_points_free(pls_points *points)
     pls_release(&points->velocity);
     pls_release(&points->angular_velocity);
     pls_release(&points->orientation);
+    pls_release(&points->choice);
     points->count = 0;
 }
 
@@ -92,10 +97,80 @@ static pls_status make_points(const pls_node *list, pls_points *points)
     return PLS_OK;
 }
 
+// ---------------------------------------------------------------------------------------------------------------------------------------
+// drawn at random
+
+static uint64_t seed_of(const pls_scene_body *body)
+{
+    const pls_node *random = pls_node_get(pls_node_get(body->node, "place"), "random");
+    return (uint64_t)pls_scene_number(body->node, "seed", pls_scene_number(random, "seed", 1.0));
+}
+
+size_t pls_points_choice(const pls_scene_body *body, size_t k)
+{
+    if (body->choices == 1) return 0;
+    pls_random random = pls_random_stream(seed_of(body), k, PLS_FOR_SHAPE);
+    double u = pls_random_uniform(&random);
+    size_t c = 0;
+    while (c + 1 < body->choices && u >= body->choice[c].up_to) ++c;
+    return c;
+}
+
+const pls_scene_shape *pls_points_shape(const pls_scene *scene, const pls_scene_body *body, const pls_points *points, size_t k)
+{
+    return pls_scene_choice_shape(scene, body, points->choice ? points->choice[k] : 0);
+}
+
+double pls_points_radius(const pls_scene *scene, const pls_scene_body *body, size_t k)
+{
+    return pls_scene_choice_shape(scene, body, pls_points_choice(body, k))->made->radius;
+}
+
+/// Bounding radius of the largest shape.
+static double largest_radius(const pls_scene *scene, const pls_scene_body *body)
+{
+    double radius = 0.0;
+    for (size_t c = 0; c < body->choices; ++c) radius = fmax(radius, pls_scene_choice_shape(scene, body, c)->made->radius);
+    return radius;
+}
+
+/// Uniform over all rotations (Shoemake, Graphics Gems III, 1992), in 2D over all angles.
+static pls_quat draw_orientation(uint64_t seed, size_t k, int dimension)
+{
+    pls_random random = pls_random_stream(seed, k, PLS_FOR_ORIENTATION);
+    double first = 2.0 * M_PI * pls_random_uniform(&random);
+    if (dimension == 2) return (pls_quat){cos(first / 2.0), 0.0, 0.0, sin(first / 2.0)};
+    double second = 2.0 * M_PI * pls_random_uniform(&random), u = pls_random_uniform(&random);
+    double a = sqrt(1.0 - u), b = sqrt(u);
+    return pls_quat_unit((pls_quat){b * cos(second), a * sin(first), a * cos(first), b * sin(second)});
+}
+
+static bool turns_at_random(const pls_scene_body *body)
+{
+    const pls_node *turn = pls_node_get(body->node, "orientation");
+    return turn && turn->kind == PLS_NODE_SCALAR && strcmp(turn->text, "random") == 0;
+}
+
+/// What the arrangement itself did not tell.
+static pls_status draw_rest(const pls_scene *scene, const pls_scene_body *body, pls_points *points)
+{
+    if (body->choices > 1)
+    {
+        PLS_TRY(pls_allocate(&points->choice, points->count, sizeof *points->choice, "shapes of bodies"));
+        for (size_t k = 0; k < points->count; ++k) points->choice[k] = (uint32_t)pls_points_choice(body, k);
+    }
+    if (!turns_at_random(body) || points->orientation) return PLS_OK;
+    PLS_TRY(pls_allocate(&points->orientation, points->count, sizeof *points->orientation, "orientations of bodies"));
+    for (size_t k = 0; k < points->count; ++k) points->orientation[k] = draw_orientation(seed_of(body), k, scene->dimension);
+    return PLS_OK;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------------
+
 static pls_status make_by_kind(const pls_scene *scene, const pls_scene_body *body, pls_points *points)
 {
     const pls_node *place = pls_node_get(body->node, "place");
-    double radius = scene->shapes[body->shape].made->radius, scale = pls_scene_number(body->node, "scale", 1.0);
+    const double diameter = 2.0 * largest_radius(scene, body) * pls_scene_number(body->node, "scale", 1.0);
     if (!place)
     {
         points->count = 1;
@@ -105,10 +180,10 @@ static pls_status make_by_kind(const pls_scene *scene, const pls_scene_body *bod
     }
     const char *kind = place->key[0]->text;
     const pls_node *section = place->child[0];
-    if (strcmp(kind, "lattice") == 0) return make_lattice(scene, section, 2.0 * radius * scale, points);
-    if (strcmp(kind, "hex_pack") == 0) return make_hex_pack(scene, section, 2.0 * radius * scale, points);
-    if (strcmp(kind, "random") == 0) return pls_points_random(scene, section, radius, scale, points);
-    if (strcmp(kind, "csv") == 0) return pls_points_csv(scene, section, radius, scale, points);
+    if (strcmp(kind, "lattice") == 0) return make_lattice(scene, section, diameter, points);
+    if (strcmp(kind, "hex_pack") == 0) return make_hex_pack(scene, section, diameter, points);
+    if (strcmp(kind, "random") == 0) return pls_points_random(scene, body, section, points);
+    if (strcmp(kind, "csv") == 0) return pls_points_csv(scene, body, section, points);
     return make_points(section, points);
 }
 
@@ -116,6 +191,7 @@ pls_status pls_points_make(const pls_scene *scene, const pls_scene_body *body, p
 {
     *points = (pls_points){0};
     pls_status status = make_by_kind(scene, body, points);
+    if (status == PLS_OK) status = draw_rest(scene, body, points);
     if (status != PLS_OK) pls_points_free(points);
     return status;
 }

@@ -48,6 +48,65 @@ static pls_status check_distribution(const pls_node *radius)
     return PLS_OK;
 }
 
+const pls_scene_shape *pls_scene_choice_shape(const pls_scene *scene, const pls_scene_body *body, size_t c)
+{
+    return &scene->shapes[body->choice[c].shape];
+}
+
+/// The name of the c-th shape of an entry, and how many shapes that are alike it stands for.
+static const pls_node *choice_name(const pls_node *shape, size_t c, double *fraction)
+{
+    *fraction = shape->kind == PLS_NODE_MAP ? shape->child[c]->number : 1.0;
+    return shape->kind == PLS_NODE_SCALAR ? shape : shape->kind == PLS_NODE_MAP ? shape->key[c] : shape->child[c];
+}
+
+static pls_status parse_choices(pls_scene *scene, pls_scene_body *body)
+{
+    const pls_node *node = pls_node_get(body->node, "shape");
+    double sum = 0.0, fraction = 0.0;
+    body->choices = node->kind == PLS_NODE_SCALAR ? 1 : node->count;
+    PLS_TRY(pls_arena_allocate(&scene->arena, &body->choice, body->choices, sizeof *body->choice, "shapes of bodies"));
+    for (size_t c = 0; c < body->choices; ++c)
+    {
+        const pls_node *name = choice_name(node, c, &fraction);
+        PLS_TRY(pls_scene_need_shape(scene, name, &body->choice[c].shape));
+        const pls_shape_ops *ops = pls_scene_choice_shape(scene, body, c)->ops;
+        if (body->choices > 1 && (ops->unbounded || ops->wall))
+            return pls_node_fail(name, "give it an entry of its own", "the %s '%s' is a wall and cannot be one of a mix of shapes",
+                                 ops->name, name->text);
+        sum += fraction;
+        body->choice[c].up_to = sum;
+    }
+    for (size_t c = 0; c < body->choices; ++c) body->choice[c].up_to = c + 1 < body->choices ? body->choice[c].up_to / sum : 1.0;
+    return PLS_OK;
+}
+
+/// Walls of finite size have no mass, so no force can move them.
+static pls_status check_wall(const pls_scene_body *body, const pls_scene_shape *shape)
+{
+    const pls_node *motion = pls_node_get(body->node, "motion");
+    const char *const vectors[] = {"velocity", "angular_velocity", "displacement"};
+    if (!shape->ops->wall) return PLS_OK;
+    if (!motion && !pls_scene_boolean(body->node, "fixed", false))
+        return pls_node_fail(body->node, "write  fixed: true,  or give a `motion`",
+                             "the %s '%s' has no mass, so the body '%s' must be fixed or driven", shape->ops->name, shape->name,
+                             body->name);
+    for (size_t k = 0; k < 3; ++k)
+    {
+        const pls_node *vector = pls_node_get(motion, vectors[k]);
+        if (vector && vector->kind == PLS_NODE_SCALAR && strcmp(vector->text, "free") == 0)
+            return pls_node_fail(vector, NULL, "the %s '%s' has no mass, so no axis of its motion can be free", shape->ops->name,
+                                 shape->name);
+        for (size_t c = 0; vector && c < vector->count; ++c)
+        {
+            if (vector->child[c]->kind == PLS_NODE_SCALAR && strcmp(vector->child[c]->text, "free") == 0)
+                return pls_node_fail(vector->child[c], NULL, "the %s '%s' has no mass, so no axis of its motion can be free",
+                                     shape->ops->name, shape->name);
+        }
+    }
+    return PLS_OK;
+}
+
 static pls_status check_place(const pls_scene_body *body, const pls_scene_shape *shape)
 {
     const pls_node *place = pls_node_get(body->node, "place");
@@ -99,10 +158,20 @@ static pls_status check_direction(const pls_node *node, const char *key, const c
     return pls_node_fail(vector, NULL, "'%s' must not be zero", inner ? inner : key);
 }
 
-static pls_status check_mass(const pls_scene *scene, const pls_scene_body *body, bool unbounded)
+pls_status pls_scene_check_turn(const pls_scene *scene, const pls_node *map)
+{
+    PLS_TRY(check_direction(map, "orientation", NULL));
+    PLS_TRY(check_direction(map, "orientation", "axis"));
+    const pls_node *turn = pls_node_get(map, "orientation");
+    if (scene->dimension == 3 && turn && turn->kind == PLS_NODE_MAP && !pls_node_get(turn, "axis"))
+        return pls_node_fail(turn, "for example  {axis: [0, 0, 1], angle: 0.5}", "missing key 'axis' in 'orientation'");
+    return PLS_OK;
+}
+
+static pls_status check_mass(const pls_scene *scene, const pls_scene_body *body, bool massless)
 {
     const pls_node *material = scene->materials[body->material].node;
-    if (unbounded || pls_node_get(material, "density") || pls_node_get(body->node, "mass")) return PLS_OK;
+    if (massless || pls_node_get(material, "density") || pls_node_get(body->node, "mass")) return PLS_OK;
     return pls_node_fail(pls_node_get(body->node, "material"), "give the material a density, or the body a mass",
                          "the material '%s' has no density, which the body '%s' needs for its mass", scene->materials[body->material].name,
                          body->name);
@@ -112,7 +181,7 @@ static pls_status check_mass(const pls_scene *scene, const pls_scene_body *body,
 static pls_status check_periodic(const pls_scene *scene, const pls_scene_body *body)
 {
     const pls_node *periodic = pls_node_get(pls_node_get(scene->root, "domain"), "periodic"), *normal = pls_node_get(body->node, "normal");
-    if (!periodic || !normal || !scene->shapes[body->shape].ops->unbounded) return PLS_OK;
+    if (!periodic || !normal || !pls_scene_choice_shape(scene, body, 0)->ops->unbounded) return PLS_OK;
     for (size_t k = 0; k < periodic->count; ++k)
     {
         if (strcmp(periodic->child[k]->text, "true") == 0 && normal->child[k]->number != 0.0)
@@ -132,33 +201,30 @@ static pls_status parse_body(pls_scene *scene, const pls_node *node, size_t k)
         return pls_node_fail(at, NULL, "'%s' has a meaning of its own and cannot name a body", body->name);
     if (pls_scene_find_body(scene, body->name) >= 0)
         return pls_node_fail(at, "give one of them another name", "there is a body entry '%s' already", body->name);
-    PLS_TRY(pls_scene_need_shape(scene, pls_node_get(node, "shape"), &body->shape));
+    PLS_TRY(parse_choices(scene, body));
     PLS_TRY(pls_scene_need_material(scene, pls_node_get(node, "material"), &body->material));
 
-    const pls_scene_shape *shape = &scene->shapes[body->shape];
-    bool unbounded = shape->ops->unbounded;
+    const pls_scene_shape *shape = pls_scene_choice_shape(scene, body, 0);
+    const bool unbounded = shape->ops->unbounded, massless = unbounded || shape->ops->wall;
     PLS_TRY(exclude(node, "place", "position"));
     PLS_TRY(exclude(node, "orientation", "normal"));
     if (!pls_node_get(node, "place") && !pls_node_get(node, "position"))
         return pls_node_fail(node, "give `position` for one body or `place` for many", "the body '%s' has neither 'position' nor 'place'",
                              body->name);
+    PLS_TRY(check_wall(body, shape));
     PLS_TRY(check_place(body, shape));
     PLS_TRY(check_motion(body, unbounded));
     PLS_TRY(check_direction(node, "normal", NULL));
     PLS_TRY(check_periodic(scene, body));
-    PLS_TRY(check_direction(node, "orientation", NULL));
-    PLS_TRY(check_direction(node, "orientation", "axis"));
-    const pls_node *turn = pls_node_get(node, "orientation");
-    if (scene->dimension == 3 && turn && turn->kind == PLS_NODE_MAP && !pls_node_get(turn, "axis"))
-        return pls_node_fail(turn, "for example  {axis: [0, 0, 1], angle: 0.5}", "missing key 'axis' in 'orientation'");
+    PLS_TRY(pls_scene_check_turn(scene, node));
     const char *only_bounded[] = {"mass", "inertia"};
     for (size_t j = 0; j < 2; ++j)
     {
-        if (unbounded && pls_node_get(node, only_bounded[j]))
-            return pls_node_fail(pls_node_key(node, only_bounded[j]), NULL, "the unbounded shape '%s' has no %s", shape->name,
-                                 only_bounded[j]);
+        if (massless && pls_node_get(node, only_bounded[j]))
+            return pls_node_fail(pls_node_key(node, only_bounded[j]), NULL, "the %s '%s' has no %s",
+                                 unbounded ? "unbounded shape" : shape->ops->name, shape->name, only_bounded[j]);
     }
-    PLS_TRY(check_mass(scene, body, unbounded));
+    PLS_TRY(check_mass(scene, body, massless));
     ++scene->body_count;
     return PLS_OK;
 }

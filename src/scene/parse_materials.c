@@ -93,24 +93,101 @@ void pls_scene_parameters(const pls_parameter *table, const pls_node *map, doubl
     for (; table && table->name; ++table)
     {
         const pls_node *node = pls_node_get(map, table->name);
+        if (table->kind != PLS_PARAMETER_NUMBER) continue;
         if (node && node->kind == PLS_NODE_LIST)
         {
-            for (size_t c = 0; c < 3; ++c) *values++ = node->child[c]->number;
+            // The third component that a vector of a shape has no place for in 2D is not used: any number in range will do.
+            for (size_t c = 0; c < 3; ++c) *values++ = node->child[c < node->count ? c : node->count - 1]->number;
         }
         else
             *values++ = node && node->numeric ? node->number : NAN;
     }
 }
 
-static pls_status make_shape(const pls_scene *scene, pls_scene_shape *shape)
+/// What a shape is made from besides its numbers, while it is made.
+typedef struct shape_input
 {
+    pls_shape_input input;
     double values[3 * PLS_MAX_PARAMETERS];
+    pls_vec3 *points;
+    pls_shape_part *parts;
+} shape_input;
+
+static pls_status make_shape(pls_scene *scene, size_t k);
+
+static pls_status take_points(const pls_node *list, shape_input *in)
+{
+    PLS_TRY(pls_allocate(&in->points, list->count, sizeof *in->points, "points of a shape"));
+    for (size_t k = 0; k < list->count; ++k)
+    {
+        const pls_node *point = list->child[k];
+        in->points[k] = pls_vec(point->child[0]->number, point->child[1]->number, point->count > 2 ? point->child[2]->number : 0.0);
+    }
+    in->input.points = in->points;
+    in->input.point_count = list->count;
+    return PLS_OK;
+}
+
+/// A shape that is a part is made first, wherever it stands.
+static pls_status take_part(pls_scene *scene, const pls_node *node, pls_shape_part *part)
+{
+    const pls_node *name = pls_node_get(node, "shape");
+    int index;
+    PLS_TRY(pls_scene_need_shape(scene, name, &index));
+    PLS_TRY(pls_scene_check_turn(scene, node));
+    if (scene->shapes[index].begun && !scene->shapes[index].made)
+        return pls_node_fail(name, NULL, "the shape '%s' would be a part of itself", name->text);
+    if (scene->shapes[index].ops->unbounded || scene->shapes[index].ops->wall)
+        return pls_node_fail(name, "parts are shapes that a grain may have", "the %s '%s' has no mass and cannot be a part of a compound",
+                             scene->shapes[index].ops->name, name->text);
+    PLS_TRY(make_shape(scene, (size_t)index));
+    *part = (pls_shape_part){.shape = scene->shapes[index].made,
+                             .position = pls_scene_vector(node, "position"),
+                             .orientation = pls_scene_turn(scene, node),
+                             .scale = pls_scene_number(node, "scale", 1.0)};
+    return PLS_OK;
+}
+
+static pls_status take_parts(pls_scene *scene, const pls_node *list, shape_input *in)
+{
+    PLS_TRY(pls_allocate(&in->parts, list->count, sizeof *in->parts, "parts of a shape"));
+    for (size_t k = 0; k < list->count; ++k) PLS_TRY(take_part(scene, list->child[k], &in->parts[k]));
+    in->input.parts = in->parts;
+    in->input.part_count = list->count;
+    return PLS_OK;
+}
+
+static pls_status fill_input(pls_scene *scene, const pls_scene_shape *shape, shape_input *in)
+{
+    const pls_node *map = shape->node->child[0];
+    pls_scene_parameters(shape->ops->parameters, map, in->values);
+    in->input.values = in->values;
+    for (const pls_parameter *row = shape->ops->parameters; row && row->name; ++row)
+    {
+        const pls_node *node = pls_node_get(map, row->name);
+        if (!node) continue;
+        if (row->kind == PLS_PARAMETER_PATH) in->input.path = node->text;
+        if (row->kind == PLS_PARAMETER_POINTS || row->kind == PLS_PARAMETER_FLAT_POINTS) PLS_TRY(take_points(node, in));
+        if (row->kind == PLS_PARAMETER_SHAPES) PLS_TRY(take_parts(scene, node, in));
+    }
+    return PLS_OK;
+}
+
+static pls_status make_shape(pls_scene *scene, size_t k)
+{
+    pls_scene_shape *shape = &scene->shapes[k];
+    if (shape->made) return PLS_OK;
+    shape->begun = true;
+    shape_input in = {.input = {.values = NULL}};
     char owner[PLS_NAME_SIZE + 16];
-    pls_scene_parameters(shape->ops->parameters, shape->node->child[0], values);
     snprintf(owner, sizeof owner, "shape '%s'", shape->name);
-    const pls_shape_input input = {.values = values};
-    return pls_node_context(pls_shape_make(shape->ops, scene->dimension, &input, owner, &shape->made), shape->node, "shape '%s'",
-                            shape->name);
+    pls_status status = fill_input(scene, shape, &in);
+    if (status == PLS_OK)
+        status = pls_node_context(pls_shape_make(shape->ops, scene->dimension, &in.input, owner, &shape->made), shape->node, "shape '%s'",
+                                  shape->name);
+    pls_release(&in.points);
+    pls_release(&in.parts);
+    return status;
 }
 
 pls_status pls_scene_parse_shapes(pls_scene *scene)
@@ -119,12 +196,11 @@ pls_status pls_scene_parse_shapes(pls_scene *scene)
     PLS_TRY(pls_arena_allocate(&scene->arena, &scene->shapes, map->count, sizeof *scene->shapes, "shapes"));
     for (size_t k = 0; k < map->count; ++k)
     {
-        pls_scene_shape *shape = &scene->shapes[k];
-        *shape = (pls_scene_shape){.name = map->key[k]->text, .node = map->child[k]};
-        shape->ops = pls_registry_find(&scene->shape_ops, map->child[k]->key[0]->text);
-        PLS_TRY(make_shape(scene, shape));
-        scene->shape_count = k + 1; // what is there is freed with the scene
+        scene->shapes[k] = (pls_scene_shape){
+            .name = map->key[k]->text, .node = map->child[k], .ops = pls_registry_find(&scene->shape_ops, map->child[k]->key[0]->text)};
     }
+    scene->shape_count = map->count; // what is there is freed with the scene
+    for (size_t k = 0; k < map->count; ++k) PLS_TRY(make_shape(scene, k));
     return PLS_OK;
 }
 

@@ -50,7 +50,7 @@ static pls_status parse_target(const pls_scene *scene, pls_scene_state *state)
     const pls_node *at = radius ? radius : target;
     if (state->body == PLS_OF_WORLD)
         return pls_node_fail(at, "give `of: NAME`", "a state of the world has no body whose size could follow it");
-    if (scene->shapes[scene->bodies[state->body].shape].ops->unbounded)
+    if (pls_scene_choice_shape(scene, &scene->bodies[state->body], 0)->ops->unbounded)
         return pls_node_fail(at, NULL, "the unbounded shape of '%s' has no size that could follow a state",
                              scene->bodies[state->body].name);
     if (state->initial && !(state->initial->number > 0.0))

@@ -32,9 +32,8 @@ typedef struct distribution
     double table_sum;
 } distribution;
 
-static distribution read_distribution(const pls_node *radius, double usual)
+static distribution read_distribution(const pls_node *radius)
 {
-    if (!radius) return (distribution){.least = usual, .most = usual};
     if (radius->numeric) return (distribution){.least = radius->number, .most = radius->number};
     const char *kind = radius->key[0]->text;
     const pls_node *inner = radius->child[0];
@@ -284,22 +283,32 @@ static pls_status pack(packing *p, const pls_node *section, uint64_t seed, uint3
     return place_all(p, section, seed, order, points);
 }
 
-pls_status pls_points_random(const pls_scene *scene, const pls_node *section, double radius, double scale, pls_points *points)
+/// Bounding radii and scales of all bodies: as the distribution says, or as the shapes have them.
+static void draw_sizes(const pls_scene *scene, const pls_scene_body *body, const pls_node *given, uint64_t seed, double *radii,
+                       pls_points *points)
 {
-    const pls_node *box = pls_node_get(section, "box"), *given = pls_node_get(section, "radius");
+    const double scale = pls_scene_number(body->node, "scale", 1.0);
+    distribution d = {.kind = ONE_RADIUS};
+    if (given) d = read_distribution(given);
+    for (size_t k = 0; k < points->count; ++k)
+    {
+        const double own = pls_points_radius(scene, body, k);
+        radii[k] = given ? draw_radius(&d, seed, k) : own * scale;
+        points->scale[k] = given ? radii[k] / own : scale;
+    }
+}
+
+pls_status pls_points_random(const pls_scene *scene, const pls_scene_body *body, const pls_node *section, pls_points *points)
+{
+    const pls_node *box = pls_node_get(section, "box");
     uint64_t seed = (uint64_t)pls_scene_number(section, "seed", 1.0);
-    distribution d = read_distribution(given, radius * scale);
     points->count = (size_t)pls_scene_number(section, "count", 0.0);
     PLS_TRY(pls_allocate(&points->position, points->count, sizeof *points->position, "places of bodies"));
     PLS_TRY(pls_allocate(&points->scale, points->count, sizeof *points->scale, "sizes of bodies"));
     double *radii;
     uint32_t *order = NULL;
     PLS_TRY(pls_allocate(&radii, points->count, sizeof *radii, "radii of bodies"));
-    for (size_t k = 0; k < points->count; ++k)
-    {
-        radii[k] = draw_radius(&d, seed, k);
-        points->scale[k] = given ? radii[k] / radius : scale;
-    }
+    draw_sizes(scene, body, pls_node_get(section, "radius"), seed, radii, points);
     packing p = {.lower = pls_scene_vector(box, "lower"),
                  .upper = pls_scene_vector(box, "upper"),
                  .gap = pls_scene_number(section, "gap", 0.0),

@@ -244,6 +244,7 @@ static pls_status resolve_flags(pls_resolver *r, const pls_key *key, pls_node *n
 
 static pls_status resolve_orientation(pls_resolver *r, const pls_key *key, pls_node *node, const char *label)
 {
+    if (node->kind == PLS_NODE_SCALAR && pls_schema_has_word(key->words, node->text)) return PLS_OK;
     if (node->kind == PLS_NODE_MAP) return resolve_section(r, node, key->sub, label);
     if (r->scene->dimension == 2) return resolve_number(r, key, node, label);
     return resolve_numbers(r, key, node, label, 4);
@@ -261,6 +262,24 @@ static pls_status resolve_texts(const pls_key *key, pls_node *node, const char *
         {
             if (strcmp(node->child[j]->text, node->child[k]->text) == 0)
                 return pls_node_fail(node->child[k], NULL, "'%s' is listed twice in '%s' of %s", node->child[k]->text, key->name, label);
+        }
+    }
+    return PLS_OK;
+}
+
+static pls_status resolve_mix(pls_resolver *r, const pls_key *key, pls_node *node, const char *label)
+{
+    const bool map = node->kind == PLS_NODE_MAP;
+    if (node->kind == PLS_NODE_SCALAR) return resolve_text(key, node, label);
+    if (node->count == 0) return pls_node_fail(node, key->meaning, "'%s' in %s is empty", key->name, label);
+    for (size_t k = 0; k < node->count; ++k)
+    {
+        PLS_TRY(map ? resolve_number(r, key, node->child[k], label) : resolve_text(key, node->child[k], label));
+        for (size_t j = 0; j < k && !map; ++j)
+        {
+            if (strcmp(node->child[j]->text, node->child[k]->text) == 0)
+                return pls_node_fail(node->child[k], "give fractions:  {ball: 2, stone: 1}", "'%s' is listed twice in '%s' of %s",
+                                     node->child[k]->text, key->name, label);
         }
     }
     return PLS_OK;
@@ -472,6 +491,7 @@ static pls_status resolve_value(pls_resolver *r, const pls_key *key, pls_node *n
         case PLS_KEY_ORIENTATION: return resolve_orientation(r, key, node, label);
         case PLS_KEY_POINTS: return resolve_lists_of_numbers(r, key, node, label, dimension);
         case PLS_KEY_PAIRS: return resolve_lists_of_numbers(r, key, node, label, 2);
+        case PLS_KEY_MIX: return resolve_mix(r, key, node, label);
         case PLS_KEY_NAMES:
         case PLS_KEY_WORDS: return resolve_texts(key, node, label);
         case PLS_KEY_PATHS: return PLS_OK; // resolved before, with the plugins

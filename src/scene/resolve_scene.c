@@ -192,6 +192,34 @@ static pls_status find_ops(const pls_registry *registry, const pls_node *name, c
     return pls_node_fail(name, hint, "unknown %s '%.80s'", registry->what, name->text);
 }
 
+static pls_status shape_keys(pls_resolver *r, const pls_parameter *table, pls_key *keys, size_t *count)
+{
+    for (; table && table->name && *count < PLS_MAX_KEYS; ++table)
+    {
+        char *initial;
+        PLS_TRY(pls_arena_allocate(&r->scene->arena, &initial, 32, 1, "a default"));
+        keys[(*count)++] = pls_schema_shape_parameter(table, initial);
+    }
+    return PLS_OK;
+}
+
+static pls_status wrong_dimension(const pls_resolver *r, const pls_node *name, const char *label)
+{
+    const int dimension = r->scene->dimension;
+    const pls_registry *all = &r->scene->shape_ops;
+    const char *candidates[256];
+    char hint[600], what[32];
+    size_t count = 0;
+    for (size_t k = 0; k < all->count && count < 256; ++k)
+    {
+        const pls_shape_ops *ops = all->entry[k].ops;
+        if (dimension == 2 ? ops->in_2d : ops->in_3d) candidates[count++] = ops->name;
+    }
+    snprintf(what, sizeof what, "in %dD there are", dimension);
+    pls_scene_hint(hint, sizeof hint, "", what, candidates, count);
+    return pls_node_fail(name, hint, "%s: a %s cannot be used in %dD", label, name->text, dimension);
+}
+
 static pls_status resolve_shape(pls_resolver *r, const pls_node *name, pls_node *node)
 {
     const char *label;
@@ -202,11 +230,10 @@ static pls_status resolve_shape(pls_resolver *r, const pls_node *name, pls_node 
     const void *found;
     PLS_TRY(find_ops(&r->scene->shape_ops, node->key[0], &found));
     const pls_shape_ops *ops = found;
-    if (r->scene->dimension == 2 ? !ops->in_2d : !ops->in_3d)
-        return pls_node_fail(node->key[0], NULL, "%s: a %s cannot be used in %dD", label, ops->name, r->scene->dimension);
+    if (r->scene->dimension == 2 ? !ops->in_2d : !ops->in_3d) return wrong_dimension(r, node->key[0], label);
     pls_key keys[PLS_MAX_KEYS];
     size_t count = 0;
-    PLS_TRY(parameter_keys(r, ops->parameters, 0, keys, &count));
+    PLS_TRY(shape_keys(r, ops->parameters, keys, &count));
     return pls_resolve_map(r, node->child[0], keys, count, label);
 }
 

@@ -130,6 +130,28 @@ pls_vec3 pls_scene_spin(const pls_node *map, const char *key)
     return pls_scene_vector(map, key);
 }
 
+static pls_quat turn_about(pls_vec3 axis, double angle)
+{
+    double s = sin(angle / 2.0);
+    pls_vec3 a = pls_unit(axis);
+    return (pls_quat){cos(angle / 2.0), a.x * s, a.y * s, a.z * s};
+}
+
+pls_quat pls_scene_turn(const pls_scene *scene, const pls_node *map)
+{
+    const pls_node *turn = pls_node_get(map, "orientation");
+    const pls_vec3 z = pls_vec(0.0, 0.0, 1.0);
+    if (!turn || (turn->kind == PLS_NODE_SCALAR && !turn->numeric)) return pls_quat_identity();
+    if (turn->kind == PLS_NODE_SCALAR) return turn_about(z, turn->number);
+    if (turn->kind == PLS_NODE_MAP)
+    {
+        bool given = pls_node_get(turn, "axis") && scene->dimension == 3;
+        return turn_about(given ? pls_scene_vector(turn, "axis") : z, pls_scene_number(turn, "angle", 0.0));
+    }
+    pls_quat q = {turn->child[0]->number, turn->child[1]->number, turn->child[2]->number, turn->child[3]->number};
+    return pls_quat_unit(q);
+}
+
 bool pls_scene_varies(const pls_node *vector)
 {
     if (!vector) return false;

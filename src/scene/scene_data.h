@@ -31,13 +31,23 @@ typedef struct pls_scene_shape
     const pls_node *node; ///< map of parameters
     const pls_shape_ops *ops;
     pls_shape *made;
+    bool begun; ///< while it or its parts are made
 } pls_scene_shape;
+
+/// One of the shapes that the bodies of an entry may have.
+typedef struct pls_scene_choice
+{
+    int shape;
+    double up_to; ///< sum of the fractions of this and the shapes before; 1 at the last one
+} pls_scene_choice;
 
 typedef struct pls_scene_body
 {
     const char *name;
     const pls_node *node;
-    int shape, material;
+    pls_scene_choice *choice; ///< more than one: drawn at random for each body
+    size_t choices;
+    int material;
 } pls_scene_body;
 
 typedef struct pls_scene_contact
@@ -128,6 +138,11 @@ pls_status pls_scene_need_material(const pls_scene *scene, const pls_node *node,
 pls_status pls_scene_need_shape(const pls_scene *scene, const pls_node *node, int *index);
 pls_status pls_scene_need_body(const pls_scene *scene, const pls_node *node, int *index);
 
+/// The shape of the c-th choice of an entry.
+const pls_scene_shape *pls_scene_choice_shape(const pls_scene *scene, const pls_scene_body *body, size_t c);
+/// `orientation` of a body or part is a rotation: it has an axis, and neither axis nor quaternion is zero.
+pls_status pls_scene_check_turn(const pls_scene *scene, const pls_node *map);
+
 /// Note an input file (absolute path).
 pls_status pls_scene_add_input(pls_scene *scene, const char *path);
 
@@ -142,6 +157,8 @@ const char *pls_scene_string(const pls_node *map, const char *key, const char *f
 pls_vec3 pls_scene_vector(const pls_node *map, const char *key);
 /// The same for a SPIN key: in 2D the number is the z component.
 pls_vec3 pls_scene_spin(const pls_node *map, const char *key);
+/// The rotation under `orientation`; none if it is missing, or a word.
+pls_quat pls_scene_turn(const pls_scene *scene, const pls_node *map);
 /// Values of a table of parameters from the resolved map of a shape or contact; NaN for formulas, which are bound later.
 void pls_scene_parameters(const pls_parameter *table, const pls_node *map, double *values);
 /// Whether the vector has components that are not plain numbers.

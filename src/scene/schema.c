@@ -41,6 +41,8 @@ static const pls_section sections[] = {
     {"motion", "bodies[k].motion",
      "Prescribed motion. Axes not mentioned stand still; `free` in place of a number leaves that axis to the forces."},
     {"turn", "... orientation", "A rotation about an axis."},
+    {"part", "shapes.NAME.compound.parts[k]",
+     "A shape of the scene as a part of a compound. Shapes that are only parts stand under `shapes` like all others."},
     {"contact", "contact[k]",
      "The contact law between two materials. The parameters of the law stand beside `law`. A pair that is named wins over `all`."},
     {"gravity", "forces[k]", "Uniform gravity."},
@@ -115,12 +117,16 @@ static const pls_key keys[] = {
      "relative rate of change of each edge: L(t) = L(0) (1 + rate t)"},
 
     {"body", "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY, "name of the entry and its group; body_1, body_2, ... by default"},
-    {"body", "shape", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a shape"},
+    {"body", "shape", PLS_KEY_MIX, REQUIRED | OPEN, 0, NULL, NULL, "", NULL, POSITIVE,
+     "name of a shape; or a mix, drawn at random for each body: [ball, stone], or by number {ball: 3, stone: 1}"},
     {"body", "material", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a material"},
     {"body", "place", PLS_KEY_CHOICE, 0, 0, NULL, "place", "", NULL, ANY, "places of many bodies; give this or `position`"},
-    {"body", "position", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", NULL, ANY, "centre of mass; of a plane, a point on it"},
-    {"body", "orientation", PLS_KEY_ORIENTATION, 0, 0, NULL, "turn", "", NULL, ANY,
-     "grain frame to world: quaternion [w, x, y, z] or {axis, angle}; in 2D an angle [rad]"},
+    {"body", "position", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", NULL, ANY,
+     "centre of mass; of a plane, a point on it; of a mesh or polyline, the origin of its frame"},
+    {"body", "orientation", PLS_KEY_ORIENTATION, 0, 0, "random", "turn", "", NULL, ANY,
+     "the shape's own frame to the world: quaternion [w, x, y, z] or {axis, angle}; in 2D an angle [rad]; random: any, equally likely"},
+    {"body", "seed", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 0, 9007199254740992.0,
+     "of shapes and orientations drawn at random; that of `random` by default, else 1"},
     {"body", "normal", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "", NULL, ANY,
      "outward normal of a plane: the shape's z axis (2D: y axis) is turned onto it"},
     {"body", "velocity", PLS_KEY_VECTOR, 0, PLS_USES_PLACE, NULL, NULL, "m/s", NULL, ANY,
@@ -180,6 +186,12 @@ static const pls_key keys[] = {
      "path of the centre relative to the start, in place of `velocity`"},
     {"turn", "axis", PLS_KEY_VECTOR3, 0, 0, NULL, NULL, "", NULL, ANY, "axis of the rotation, of any length; z in 2D"},
     {"turn", "angle", PLS_KEY_NUMBER, REQUIRED, 0, NULL, NULL, "rad", NULL, ANY, "angle"},
+
+    {"part", "shape", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a shape"},
+    {"part", "position", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", "0", ANY, "of its frame's origin in the frame of the compound"},
+    {"part", "orientation", PLS_KEY_ORIENTATION, 0, 0, NULL, "turn", "", NULL, ANY,
+     "its frame to that of the compound: quaternion [w, x, y, z] or {axis, angle}; in 2D an angle [rad]"},
+    {"part", "scale", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "1", POSITIVE, "multiplies its lengths"},
 
     {"contact", "between", PLS_KEY_NAMES, REQUIRED, 0, "all", NULL, "", NULL, ANY, "[material, material], or `all` for every pair"},
     {"contact", "law", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a contact law"},
@@ -284,6 +296,32 @@ pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char
                      .minimum = parameter->minimum,
                      .maximum = parameter->maximum,
                      .meaning = parameter->meaning ? parameter->meaning : ""};
+}
+
+/// What is no number has neither range nor default.
+static pls_key other_parameter(const pls_parameter *parameter)
+{
+    static const pls_key_type types[] = {[PLS_PARAMETER_POINTS] = PLS_KEY_POINTS,
+                                         [PLS_PARAMETER_FLAT_POINTS] = PLS_KEY_PAIRS,
+                                         [PLS_PARAMETER_PATH] = PLS_KEY_PATH,
+                                         [PLS_PARAMETER_SHAPES] = PLS_KEY_LIST};
+    return (pls_key){.section = "",
+                     .name = parameter->name,
+                     .type = types[parameter->kind],
+                     .flags = isnan(parameter->initial) ? PLS_KEY_REQUIRED : 0U,
+                     .sub = parameter->kind == PLS_PARAMETER_SHAPES ? "part" : NULL,
+                     .unit = parameter->unit ? parameter->unit : "",
+                     .minimum = -INFINITY,
+                     .maximum = INFINITY,
+                     .meaning = parameter->meaning ? parameter->meaning : ""};
+}
+
+pls_key pls_schema_shape_parameter(const pls_parameter *parameter, char initial[32])
+{
+    if (parameter->kind != PLS_PARAMETER_NUMBER) return other_parameter(parameter);
+    pls_key key = pls_schema_parameter(parameter, 0, initial);
+    if (key.type == PLS_KEY_VECTOR3) key.type = PLS_KEY_VECTOR;
+    return key;
 }
 
 void pls_schema_range(const pls_key *key, char text[128])

@@ -25,10 +25,11 @@ typedef enum pls_key_type {
     PLS_KEY_RANGE,       ///< a list of two numbers, the first the smaller
     PLS_KEY_COUNTS,      ///< a list of `dimension` integers
     PLS_KEY_FLAGS,       ///< a list of `dimension` booleans
-    PLS_KEY_ORIENTATION, ///< [w, x, y, z] or {axis, angle}; in 2D an angle
+    PLS_KEY_ORIENTATION, ///< [w, x, y, z] or {axis, angle}; in 2D an angle; or one of `words`
     PLS_KEY_POINTS,      ///< a list of vectors
     PLS_KEY_PAIRS,       ///< a list of pairs of numbers
     PLS_KEY_NAMES,       ///< a list of names, or one of `words`
+    PLS_KEY_MIX,         ///< a name, a list of names, or a map from names to their fractions
     PLS_KEY_WORDS,       ///< a list of `words`
     PLS_KEY_PATHS,       ///< a list of paths
     PLS_KEY_SECTION,     ///< a map of section `sub`
@@ -86,7 +87,8 @@ enum { PLS_MAX_KEYS = 64 }; ///< of one map, parameters of a shape or law includ
 const pls_section *pls_schema_sections(size_t *count);
 /// Rows of a section, `*count` of them (they lie together in the table).
 const pls_key *pls_schema_keys(const char *section, size_t *count);
-/// A row for a parameter of a shape or law. `initial` holds 32 bytes for the default's text and must live as long as the row.
+/// A row for a parameter of a shape, or of a law, whose vectors have three components in 2D too. `initial` holds 32 bytes for the default's text and must live as long as the row.
+pls_key pls_schema_shape_parameter(const pls_parameter *parameter, char initial[32]);
 pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char initial[32]);
 
 /// "greater than 0 and at most 1".

@@ -96,7 +96,9 @@ static pls_status json_type(pls_text *out, const pls_key *key)
             PLS_TRY(json_number(out, key, false));
             PLS_TRY(pls_text_print(out, ", "));
             PLS_TRY(json_list(out, key, false, 4, 4));
-            return pls_text_print(out, "]}");
+            if (key->words) PLS_TRY(pls_text_print(out, ", {\"enum\": "));
+            if (key->words) PLS_TRY(json_words(out, key->words));
+            return pls_text_print(out, "%s]}", key->words ? "}" : "");
         case PLS_KEY_FLAGS:
             return pls_text_print(out, "{\"type\": \"array\", \"minItems\": 2, \"maxItems\": 3, \"items\": {\"type\": \"boolean\"}}");
         case PLS_KEY_POINTS:
@@ -104,6 +106,11 @@ static pls_status json_type(pls_text *out, const pls_key *key)
             PLS_TRY(pls_text_print(out, "{\"type\": \"array\", \"minItems\": 1, \"items\": "));
             PLS_TRY(json_list(out, key, false, 2, key->type == PLS_KEY_PAIRS ? 2 : 3));
             return pls_text_print(out, "}");
+        case PLS_KEY_MIX:
+            PLS_TRY(pls_text_print(out, "{\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": "
+                                        "\"string\"}}, {\"type\": \"object\", \"minProperties\": 1, \"additionalProperties\": "));
+            PLS_TRY(json_number(out, key, false));
+            return pls_text_print(out, "}]}");
         case PLS_KEY_NAMES:
             PLS_TRY(pls_text_print(out, "{\"anyOf\": [{\"type\": \"array\", \"items\": {\"type\": \"string\"}}"));
             if (key->words) PLS_TRY(pls_text_print(out, ", {\"enum\": "));
@@ -171,13 +178,25 @@ static pls_status json_map(pls_text *out, const pls_key *keys, size_t count, boo
     return pls_text_print(out, closed ? ", \"additionalProperties\": false" : "");
 }
 
-static pls_status json_parameters(pls_text *out, const pls_parameter *table, bool closed)
+typedef enum table_owner { OF_SHAPE, OF_LAW } table_owner;
+
+/// Rows of a table of parameters; `initial` holds their defaults' texts.
+static size_t parameter_keys(const pls_parameter *table, table_owner owner, pls_key keys[PLS_MAX_KEYS], char initial[PLS_MAX_KEYS][32])
+{
+    size_t count = 0;
+    for (; table && table->name && count < PLS_MAX_KEYS; ++table, ++count)
+        keys[count] = owner == OF_SHAPE ? pls_schema_shape_parameter(table, initial[count])
+                                        : pls_schema_parameter(table, PLS_USES_TIME | PLS_USES_STATES, initial[count]);
+    return count;
+}
+
+/// The map of a shape holds nothing else, that of a contact law does.
+static pls_status json_parameters(pls_text *out, const pls_parameter *table, table_owner owner)
 {
     pls_key keys[PLS_MAX_KEYS];
     char initial[PLS_MAX_KEYS][32];
-    size_t count = 0;
-    for (; table && table->name && count < PLS_MAX_KEYS; ++table, ++count) keys[count] = pls_schema_parameter(table, 0, initial[count]);
-    return json_map(out, keys, count, closed);
+    size_t count = parameter_keys(table, owner, keys, initial);
+    return json_map(out, keys, count, owner == OF_SHAPE);
 }
 
 static pls_status json_shape(pls_text *out)
@@ -190,7 +209,7 @@ static pls_status json_shape(pls_text *out)
         PLS_TRY(pls_text_print(out, ": {\"type\": [\"object\", \"null\"], \"description\": "));
         PLS_TRY(json_string(out, (*ops)->meaning));
         PLS_TRY(pls_text_print(out, ", "));
-        PLS_TRY(json_parameters(out, (*ops)->parameters, true));
+        PLS_TRY(json_parameters(out, (*ops)->parameters, OF_SHAPE));
         PLS_TRY(pls_text_print(out, "}"));
     }
     return pls_text_print(out, "}}");
@@ -208,7 +227,7 @@ static pls_status json_laws(pls_text *out)
         PLS_TRY(pls_text_print(out, "}}}, \"then\": {\"description\": "));
         PLS_TRY(json_string(out, (*ops)->meaning));
         PLS_TRY(pls_text_print(out, ", "));
-        PLS_TRY(json_parameters(out, (*ops)->parameters, false));
+        PLS_TRY(json_parameters(out, (*ops)->parameters, OF_LAW));
         PLS_TRY(pls_text_print(out, "}}"));
     }
     return pls_text_print(out, "]");
@@ -263,6 +282,7 @@ static const char *type_text(pls_key_type type)
         case PLS_KEY_ORIENTATION: return "orientation";
         case PLS_KEY_POINTS: return "list of vectors";
         case PLS_KEY_PAIRS: return "list of pairs";
+        case PLS_KEY_MIX: return "name, list of names or map of numbers";
         case PLS_KEY_NAMES: return "list of names";
         case PLS_KEY_WORDS: return "list of";
         case PLS_KEY_PATHS: return "list of paths";
@@ -336,12 +356,11 @@ static pls_status page_keys(pls_text *out, const pls_key *keys, size_t count)
     return pls_text_print(out, "\n");
 }
 
-static pls_status page_parameters(pls_text *out, const char *name, const char *meaning, const pls_parameter *table, unsigned uses)
+static pls_status page_parameters(pls_text *out, const char *name, const char *meaning, const pls_parameter *table, table_owner owner)
 {
     pls_key keys[PLS_MAX_KEYS];
     char initial[PLS_MAX_KEYS][32];
-    size_t count = 0;
-    for (; table && table->name && count < PLS_MAX_KEYS; ++table, ++count) keys[count] = pls_schema_parameter(table, uses, initial[count]);
+    size_t count = parameter_keys(table, owner, keys, initial);
     PLS_TRY(pls_text_print(out, "### %s\n\n%s.\n\n", name, meaning ? meaning : ""));
     return page_keys(out, keys, count);
 }
@@ -383,10 +402,10 @@ static pls_status write_page(pls_text *out)
     }
     PLS_TRY(pls_text_print(out, "## Shapes\n\n`shapes: {NAME: {SHAPE: {parameters}}}`\n\n"));
     for (const pls_shape_ops *const *ops = pls_builtin_shapes(); *ops; ++ops)
-        PLS_TRY(page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, 0));
+        PLS_TRY(page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, OF_SHAPE));
     PLS_TRY(pls_text_print(out, "## Contact laws\n\n`contact: [{between: [a, b], law: LAW, parameters}]`\n\n"));
     for (const pls_law_ops *const *ops = pls_builtin_laws(); *ops; ++ops)
-        PLS_TRY(page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, PLS_USES_TIME | PLS_USES_STATES));
+        PLS_TRY(page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, OF_LAW));
     return PLS_OK;
 }
 

@@ -10,7 +10,7 @@
 static const pls_parameter parameters[] = {
     {.name = "half",
      .unit = "m",
-     .meaning = "half edges along x, y, z, rounding included (2D: the third is not used)",
+     .meaning = "half edges along x, y, z, in 2D along x, y; rounding included",
      .initial = PLS_REQUIRED,
      .minimum = 0.0,
      .maximum = INFINITY,

@@ -5,7 +5,8 @@
 #include <particls/shape.h>
 
 extern const pls_shape_ops pls_sphere_shape, pls_plane_shape, pls_box_shape, pls_capsule_shape, pls_cylinder_shape, pls_ellipsoid_shape,
-    pls_superquadric_shape, pls_polyhedron_shape, pls_polygon_shape;
+    pls_superquadric_shape, pls_polyhedron_shape, pls_prism_shape, pls_compound_shape, pls_mesh_shape;
+extern const pls_shape_ops pls_disc_shape, pls_half_plane_shape, pls_ellipse_shape, pls_polygon_shape, pls_polyline_shape; // 2D
 
 /// A sphere or disc, whose contacts are found by centre and radius alone.
 static inline bool pls_shape_is_ball(const pls_shape *shape) { return shape->ops->sdf == pls_sphere_shape.sdf; }

@@ -1,4 +1,4 @@
-// ellipsoid.c -- the ellipsoid, in 2D the ellipse, by its true distance.
+// ellipsoid.c -- the ellipsoid, in 2D the ellipse, by its true distance; thickened by a ball if wanted.
 //
 // The foot x of a point y obeys x_i = e_i^2 y_i / (t + e_i^2) for a number t > -e_min^2, and lies on the surface: one equation for t (Eberly, "Distance from a point
 // to an ellipse, an ellipsoid, or a hyperellipsoid", Geometric Tools 2013). With u = 1 + t / e_min^2 the equation is |p(u)| = 1, p_i = (e_i y_i / e_min^2) / (u + r_i - 1),
@@ -7,19 +7,27 @@
 // the normal at the foot: of all n this is the largest, so errors of n count squared.
 
 #include "shape/builtin.h"
+#include "shape/mass_quadrature.h"
 
 static const pls_parameter parameters[] = {
     {.name = "half",
      .unit = "m",
-     .meaning = "half axes along x, y, z (2D: the third is not used)",
+     .meaning = "half axes along x, y, z, in 2D along x, y; without the rounding",
      .initial = PLS_REQUIRED,
      .minimum = 0.0,
      .maximum = INFINITY,
      .open_minimum = true,
      .components = 3},
+    {.name = "rounding",
+     .unit = "m",
+     .meaning = "radius of a ball (disc) by which it is thickened; the whole is larger by it",
+     .initial = 0.0,
+     .minimum = 0.0,
+     .maximum = INFINITY},
     {.name = NULL},
 };
 
+enum { ROUNDING = 3 };
 enum { NEWTON_STEPS = 200 }; ///< far more than ever taken: some 5, near the medial axis up to 60
 
 static double least_axis(const pls_shape *shape)
@@ -92,8 +100,10 @@ static double support_function(const pls_shape *shape, pls_vec3 n)
 static double sdf(const pls_shape *shape, pls_vec3 X)
 {
     pls_vec3 n = gradient(shape, X);
-    return pls_dot(n, X) - support_function(shape, n);
+    return pls_dot(n, X) - support_function(shape, n) - shape->values[ROUNDING];
 }
+
+static double margin(const pls_shape *shape) { return shape->values[ROUNDING]; }
 
 static pls_vec3 support(const pls_shape *shape, pls_vec3 n)
 {
@@ -116,13 +126,13 @@ static void support_gradient(const pls_shape *shape, pls_vec3 n, double derivati
 static double bounding_radius(const pls_shape *shape)
 {
     const double *e = shape->values;
-    return fmax(fmax(e[0], e[1]), shape->dimension == 2 ? 0.0 : e[2]);
+    return fmax(fmax(e[0], e[1]), shape->dimension == 2 ? 0.0 : e[2]) + e[ROUNDING];
 }
 
 static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper)
 {
-    const double *e = shape->values;
-    *upper = pls_vec(e[0], e[1], shape->dimension == 2 ? 0.0 : e[2]);
+    const double *e = shape->values, r = e[ROUNDING];
+    *upper = pls_vec(e[0] + r, e[1] + r, shape->dimension == 2 ? 0.0 : e[2] + r);
     *lower = pls_scale(*upper, -1.0);
 }
 
@@ -130,6 +140,7 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
 {
     const double *e = shape->values, xx = e[0] * e[0], yy = e[1] * e[1], zz = e[2] * e[2];
     const bool flat = shape->dimension == 2;
+    if (e[ROUNDING] > 0.0) return pls_mass_by_quadrature(shape, pls_vec(0.0, 0.0, 0.0), bounding_radius(shape) * (1.0 + 1e-9), out);
     *out = (pls_mass_properties){.volume = flat ? M_PI * e[0] * e[1] : 4.0 / 3.0 * M_PI * e[0] * e[1] * e[2]};
     out->inertia[2] = out->volume * (xx + yy) / (flat ? 4.0 : 5.0);
     if (flat) return PLS_OK;
@@ -138,20 +149,22 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
     return PLS_OK;
 }
 
+#define ANSWERS                                                                                                                       \
+    .api_version = PLS_API_VERSION, .parameters = parameters, .convex = true, .smooth = true, .sdf = sdf, .gradient = gradient,       \
+    .support = support, .support_gradient = support_gradient, .margin = margin, .bounding_radius = bounding_radius, .bounds = bounds, \
+    .mass_properties = mass_properties
+
 const pls_shape_ops pls_ellipsoid_shape = {
-    .api_version = PLS_API_VERSION,
     .name = "ellipsoid",
     .meaning = "an ellipsoid; in 2D an ellipse",
-    .parameters = parameters,
     .in_2d = true,
     .in_3d = true,
-    .convex = true,
-    .smooth = true,
-    .sdf = sdf,
-    .gradient = gradient,
-    .support = support,
-    .support_gradient = support_gradient,
-    .bounding_radius = bounding_radius,
-    .bounds = bounds,
-    .mass_properties = mass_properties,
+    ANSWERS,
+};
+
+const pls_shape_ops pls_ellipse_shape = {
+    .name = "ellipse",
+    .meaning = "an ellipse: an ellipsoid in 2D",
+    .in_2d = true,
+    ANSWERS,
 };

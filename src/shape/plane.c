@@ -21,15 +21,20 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
     return shape->dimension == 2 ? pls_vec(0.0, 1.0, 0.0) : pls_vec(0.0, 0.0, 1.0);
 }
 
+#define ANSWERS \
+    .api_version = PLS_API_VERSION, .parameters = parameters, .unbounded = true, .convex = true, .sdf = sdf, .gradient = gradient
+
 const pls_shape_ops pls_plane_shape = {
-    .api_version = PLS_API_VERSION,
     .name = "plane",
     .meaning = "a half-space (2D: half-plane); its body's position lies on the surface, `normal` points out of it",
-    .parameters = parameters,
     .in_2d = true,
     .in_3d = true,
-    .unbounded = true,
-    .convex = true,
-    .sdf = sdf,
-    .gradient = gradient,
+    ANSWERS,
+};
+
+const pls_shape_ops pls_half_plane_shape = {
+    .name = "half_plane",
+    .meaning = "a half-plane: a plane in 2D",
+    .in_2d = true,
+    ANSWERS,
 };

@@ -1,4 +1,4 @@
-// polyhedron.c -- the convex polyhedron, in 2D the polygon: the hull of points, or of the vertices of a mesh, rounded by a ball (disc) if wanted.
+// polyhedron.c -- the convex polyhedron, in 2D the polygon, and the prism over a polygon: the hull of points, or a convex mesh, rounded by a ball (disc) if wanted.
 //
 // phi(X) inside is the greatest height over a face's plane. Outside, the nearest point of a convex body is unique: if X is above a face and within its edges, that
 // face has it; else an edge of a face seen from X has it. Faces whose plane is not nearer than what was found are passed over. With `rounding` the points are the
@@ -9,11 +9,10 @@
 #include "shape/mesh.h"
 #include "shape/polytope.h"
 
-#define POINTS                                                                                                                    \
-    {                                                                                                                             \
-        .name = "points", .unit = "m", .meaning = "points whose convex hull it is, or centres of the ball (disc) that rounds it", \
-        .kind = PLS_PARAMETER_POINTS                                                                                              \
-    }
+#include "base/alloc.h"
+
+static const char of_points[] = "points whose convex hull it is, or centres of the ball (disc) that rounds it";
+
 #define ROUNDING                                                                                                                        \
     {                                                                                                                                   \
         .name = "rounding", .unit = "m", .meaning = "radius of a ball (disc) that rounds edges and corners; the whole is larger by it", \
@@ -21,29 +20,159 @@
     }
 
 static const pls_parameter solid_parameters[] = {
-    POINTS,
-    {.name = "path", .unit = "", .meaning = "mesh file (.obj, .stl, .ply) in place of points; its convex hull", .kind = PLS_PARAMETER_PATH},
+    {.name = "points", .unit = "m", .meaning = of_points, .kind = PLS_PARAMETER_POINTS},
+    {.name = "path",
+     .unit = "",
+     .meaning = "mesh file (.obj, .stl, .ply) of a convex polyhedron, in place of points",
+     .kind = PLS_PARAMETER_PATH},
+    ROUNDING,
+    {.name = "hull",
+     .unit = "",
+     .meaning = "1: take the convex hull of a mesh that is not convex, or not closed; 0: refuse it",
+     .initial = 0.0,
+     .minimum = 0.0,
+     .maximum = 1.0},
+    {.name = NULL},
+};
+static const pls_parameter flat_parameters[] = {
+    {.name = "points", .unit = "m", .meaning = of_points, .initial = PLS_REQUIRED, .kind = PLS_PARAMETER_POINTS},
     ROUNDING,
     {.name = NULL},
 };
-static const pls_parameter flat_parameters[] = {POINTS, ROUNDING, {.name = NULL}};
+static const pls_parameter prism_parameters[] = {
+    {.name = "points",
+     .unit = "m",
+     .meaning = "points of the x-y plane whose convex hull is its base, or centres of the disc that rounds it",
+     .initial = PLS_REQUIRED,
+     .kind = PLS_PARAMETER_FLAT_POINTS},
+    ROUNDING,
+    {.name = "height",
+     .unit = "m",
+     .meaning = "height along z, from -height/2 to height/2, without the rounding",
+     .initial = PLS_REQUIRED,
+     .minimum = 0.0,
+     .maximum = INFINITY,
+     .open_minimum = true},
+    {.name = NULL},
+};
 
-static pls_status prepare(const pls_shape_input *input, int dimension, void **data)
+enum { ROUNDED = 0, HULL = 1, HEIGHT = 1 }; ///< places of the values
+
+// ---- making ---------------------------------------------------------------------------------------------------------------------------------------------------
+
+static const double bulge = 1e-5;     ///< of the size: how far below the hull a triangle of a convex mesh may lie (files hold floats)
+static const double open_part = 1e-4; ///< of the hull's area: what a closed mesh may lack
+
+/// How deep X lies below the surface of the hull.
+static double depth_in(const pls_hull *hull, pls_vec3 X)
+{
+    double least = INFINITY;
+    for (uint32_t f = 0; f < hull->body.face_count; ++f) least = fmin(least, hull->offset[f] - pls_dot(hull->body.face_normal[f], X));
+    return least;
+}
+
+static double area_of_hull(const pls_polytope *p)
+{
+    double area = 0.0;
+    for (uint32_t f = 0; f < p->face_count; ++f)
+    {
+        pls_vec3 sum = {0.0, 0.0, 0.0}, a = p->vertex[p->face_vertex[p->face_start[f]]];
+        for (uint32_t k = p->face_start[f] + 1; k + 1 < p->face_start[f + 1]; ++k)
+            sum = pls_add(sum, pls_cross(pls_sub(p->vertex[p->face_vertex[k]], a), pls_sub(p->vertex[p->face_vertex[k + 1]], a)));
+        area += 0.5 * pls_length(sum);
+    }
+    return area;
+}
+
+/// A mesh is convex if all of it lies on the surface of its hull, and covers it.
+static pls_status check_convex(const pls_mesh *mesh, const pls_hull *hull)
+{
+    static const char what_else[] =
+        "take it as a wall of shape `mesh`, build the grain as a `compound` of convex pieces, or take the hull with  hull: 1";
+    const double size = pls_length(pls_sub(hull->upper, hull->lower));
+    double area = 0.0;
+    for (size_t t = 0; t < mesh->triangle_count; ++t)
+    {
+        pls_vec3 a = mesh->vertex[mesh->triangle[t][0]], b = mesh->vertex[mesh->triangle[t][1]], c = mesh->vertex[mesh->triangle[t][2]];
+        const pls_vec3 look[4] = {pls_scale(pls_add(a, pls_add(b, c)), 1.0 / 3.0), pls_scale(pls_add(a, b), 0.5),
+                                  pls_scale(pls_add(b, c), 0.5), pls_scale(pls_add(c, a), 0.5)};
+        area += 0.5 * pls_length(pls_cross(pls_sub(b, a), pls_sub(c, a)));
+        for (int k = 0; k < 4; ++k)
+        {
+            double depth = depth_in(hull, look[k]);
+            if (depth > bulge * size)
+                return pls_fail(PLS_INVALID_ARGUMENT, "the mesh is not convex: triangle %zu lies %g below the hull at (%g, %g, %g); %s",
+                                t + 1, depth, look[k].x, look[k].y, look[k].z, what_else);
+        }
+    }
+    double whole = area_of_hull(&hull->body);
+    if (area < (1.0 - open_part) * whole)
+        return pls_fail(PLS_INVALID_ARGUMENT, "the mesh is not closed: its triangles cover %.4g %% of its hull; %s", 100.0 * area / whole,
+                        what_else);
+    return PLS_OK;
+}
+
+static pls_status hull_of_mesh(const pls_shape_input *input, int dimension, pls_hull **hull)
+{
+    pls_mesh mesh = {0};
+    PLS_TRY(pls_mesh_read(input->path, &mesh));
+    pls_status status = pls_hull_make(mesh.vertex, mesh.vertex_count, dimension, hull);
+    if (status == PLS_OK && input->values[HULL] == 0.0) status = check_convex(&mesh, *hull);
+    if (status != PLS_OK)
+    {
+        pls_hull_free(*hull);
+        *hull = NULL;
+        status = pls_fail_context(status, "%s: ", input->path);
+    }
+    pls_mesh_free(&mesh);
+    return status;
+}
+
+static pls_status prepare_solid(const pls_shape_input *input, int dimension, void **data)
 {
     pls_hull *hull = NULL;
-    pls_mesh mesh = {0};
     if (input->path && input->point_count > 0)
         return pls_fail(PLS_INVALID_ARGUMENT, "a polyhedron has both points and a path to a mesh; give one of them");
-    if (input->path) PLS_TRY(pls_mesh_read(input->path, &mesh));
-    pls_status status = input->path ? pls_hull_make(mesh.vertex, mesh.vertex_count, dimension, &hull)
-                                    : pls_hull_make(input->points, input->point_count, dimension, &hull);
-    if (status != PLS_OK && input->path) status = pls_fail_context(status, "%s: ", input->path);
-    pls_mesh_free(&mesh);
+    if (!input->path && input->point_count == 0)
+        return pls_fail(PLS_INVALID_ARGUMENT, "a polyhedron needs 'points', or the 'path' of a mesh file (.obj, .stl, .ply)");
+    if (input->path)
+        PLS_TRY(hull_of_mesh(input, dimension, &hull));
+    else
+        PLS_TRY(pls_hull_make(input->points, input->point_count, dimension, &hull));
+    *data = hull;
+    return PLS_OK;
+}
+
+static pls_status prepare_flat(const pls_shape_input *input, int dimension, void **data)
+{
+    pls_hull *hull = NULL;
+    PLS_TRY(pls_hull_make(input->points, input->point_count, dimension, &hull));
+    *data = hull;
+    return PLS_OK;
+}
+
+/// The points below and above. Points inside of the base are left out by the hull.
+static pls_status prepare_prism(const pls_shape_input *input, int dimension, void **data)
+{
+    const size_t count = input->point_count;
+    pls_vec3 *points = NULL;
+    pls_hull *hull = NULL;
+    if (count < 3) return pls_fail(PLS_INVALID_ARGUMENT, "the base of a prism needs at least 3 points, not %zu", count);
+    PLS_TRY(pls_allocate(&points, 2 * count, sizeof *points, "points of a prism"));
+    for (size_t k = 0; k < 2 * count; ++k)
+    {
+        points[k] = input->points[k / 2];
+        points[k].z = (k & 1 ? 0.5 : -0.5) * input->values[HEIGHT];
+    }
+    pls_status status = pls_hull_make(points, 2 * count, dimension, &hull);
+    pls_release(&points);
     *data = hull;
     return status;
 }
 
 static void release(void *data) { pls_hull_free(data); }
+
+// ---- distance -------------------------------------------------------------------------------------------------------------------------------------------------
 
 /// Does X project into face f, within all its edges?
 static bool is_over_face(const pls_polytope *p, uint32_t f, pls_vec3 X)
@@ -107,7 +236,7 @@ static double distance(const pls_hull *hull, pls_vec3 X, pls_vec3 *gradient)
 static double sdf(const pls_shape *shape, pls_vec3 X)
 {
     pls_vec3 unused = {0.0, 0.0, 0.0};
-    return distance(shape->data, X, &unused) - shape->values[0];
+    return distance(shape->data, X, &unused) - shape->values[ROUNDED];
 }
 
 static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
@@ -119,7 +248,7 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
 
 static pls_vec3 support(const pls_shape *shape, pls_vec3 n) { return pls_hull_support(shape->data, n); }
 
-static double margin(const pls_shape *shape) { return shape->values[0]; }
+static double margin(const pls_shape *shape) { return shape->values[ROUNDED]; }
 
 static const pls_polytope *polytope(const pls_shape *shape)
 {
@@ -130,7 +259,7 @@ static const pls_polytope *polytope(const pls_shape *shape)
 static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper)
 {
     const pls_hull *hull = shape->data;
-    const double r = shape->values[0];
+    const double r = shape->values[ROUNDED];
     const pls_vec3 more = pls_vec(r, r, shape->dimension == 2 ? 0.0 : r);
     *lower = pls_sub(hull->lower, more);
     *upper = pls_add(hull->upper, more);
@@ -138,7 +267,7 @@ static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper)
 
 static double bounding_radius(const pls_shape *shape)
 {
-    return (pls_hull_radius(shape->data, shape->mass.centre) + shape->values[0]) * (1.0 + 1e-15);
+    return (pls_hull_radius(shape->data, shape->mass.centre) + shape->values[ROUNDED]) * (1.0 + 1e-15);
 }
 
 /// Integrals of 1, x, xx, ... over tetrahedra from `o` to the triangles of the faces (Tonon, J. Math. Stat. 1, 2005; Eberly, Polyhedral Mass Properties, 2002).
@@ -191,8 +320,8 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
 {
     const pls_hull *hull = shape->data;
     pls_vec3 middle = pls_scale(pls_add(hull->lower, hull->upper), 0.5);
-    if (shape->values[0] > 0.0)
-        return pls_mass_by_quadrature(shape, middle, (pls_hull_radius(hull, middle) + shape->values[0]) * (1.0 + 1e-9), out);
+    if (shape->values[ROUNDED] > 0.0)
+        return pls_mass_by_quadrature(shape, middle, (pls_hull_radius(hull, middle) + shape->values[ROUNDED]) * (1.0 + 1e-9), out);
     if (shape->dimension == 2)
         flat_mass(&hull->body, middle, out);
     else
@@ -201,15 +330,15 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
 }
 
 #define ANSWERS                                                                                                               \
-    .api_version = PLS_API_VERSION, .convex = true, .prepare = prepare, .release = release, .sdf = sdf, .gradient = gradient, \
-    .support = support, .margin = margin, .polytope = polytope, .bounding_radius = bounding_radius, .bounds = bounds,         \
-    .mass_properties = mass_properties
+    .api_version = PLS_API_VERSION, .convex = true, .release = release, .sdf = sdf, .gradient = gradient, .support = support, \
+    .margin = margin, .polytope = polytope, .bounding_radius = bounding_radius, .bounds = bounds, .mass_properties = mass_properties
 
 const pls_shape_ops pls_polyhedron_shape = {
     .name = "polyhedron",
-    .meaning = "a convex polyhedron: the hull of points or of a mesh",
+    .meaning = "a convex polyhedron: the hull of points, or a convex mesh",
     .parameters = solid_parameters,
     .in_3d = true,
+    .prepare = prepare_solid,
     ANSWERS,
 };
 
@@ -218,5 +347,15 @@ const pls_shape_ops pls_polygon_shape = {
     .meaning = "a convex polygon: the hull of points",
     .parameters = flat_parameters,
     .in_2d = true,
+    .prepare = prepare_flat,
+    ANSWERS,
+};
+
+const pls_shape_ops pls_prism_shape = {
+    .name = "prism",
+    .meaning = "a convex polygon extruded along z",
+    .parameters = prism_parameters,
+    .in_3d = true,
+    .prepare = prepare_prism,
     ANSWERS,
 };

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "math/principal_axes.h"
 #include "shape/mass_quadrature.h"
+#include "shape/part_tree.h"
 
 #include <string.h>
 
@@ -69,22 +70,6 @@ pls_vec3 pls_shape_support(const pls_shape *shape, pls_vec3 n)
     return shape->margin > 0.0 ? pls_add(p, pls_scale(n, shape->margin)) : p;
 }
 
-size_t pls_shape_parts_near(const pls_shape *shape, pls_vec3 X, double radius, uint32_t *found, size_t room)
-{
-    size_t count = 0;
-    for (uint32_t k = 0; k < shape->part_count; ++k)
-    {
-        const pls_shape_part *p = &shape->part[k];
-        pls_vec3 own = pls_scale(pls_rotate_back(p->orientation, pls_sub(X, p->position)), 1.0 / p->scale);
-        pls_vec3 low = pls_sub(p->shape->lower, own), high = pls_sub(own, p->shape->upper);
-        pls_vec3 out = pls_vec(fmax(0.0, fmax(low.x, high.x)), fmax(0.0, fmax(low.y, high.y)), fmax(0.0, fmax(low.z, high.z)));
-        if (!(pls_length(out) * p->scale < radius)) continue;
-        if (count < room) found[count] = k;
-        ++count;
-    }
-    return count;
-}
-
 // ---- size ---------------------------------------------------------------------------------------------------------------------------------------------------
 
 static const pls_vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -134,10 +119,32 @@ static void find_bounds(pls_shape *shape)
     }
 }
 
-/// The furthest point from `centre`: from many directions, climb from support point to support point.
-static double find_radius(const pls_shape *shape, pls_vec3 centre)
+/// The furthest of the parts, each sought by itself.
+static double reach_of_parts(const pls_shape *shape, pls_vec3 centre)
 {
     double radius = 0.0;
+    for (size_t k = 0; k < shape->part_count; ++k)
+    {
+        const pls_shape_part *part = &shape->part[k];
+        radius = fmax(radius, part->scale * pls_shape_reach(part->shape, pls_part_from_whole(part, centre)));
+    }
+    return radius * (1.0 + 1e-14);
+}
+
+static double reach_of_polytope(const pls_polytope *p, pls_vec3 centre)
+{
+    double radius = 0.0;
+    for (uint32_t v = 0; v < p->vertex_count; ++v) radius = fmax(radius, pls_length(pls_sub(p->vertex[v], centre)));
+    return radius;
+}
+
+double pls_shape_reach(const pls_shape *shape, pls_vec3 centre)
+{
+    double radius = 0.0;
+    if (shape->ops->unbounded) return INFINITY;
+    if (shape->part_count > 0) return reach_of_parts(shape, centre);
+    if (shape->polytope) return (reach_of_polytope(shape->polytope, centre) + shape->margin) * (1.0 + 1e-15);
+    // From many directions, climb from support point to support point.
     for (int k = 0; k < 27; ++k)
     {
         pls_vec3 e = pls_vec(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
@@ -199,6 +206,41 @@ static pls_status try_sdf(const pls_shape *shape, const char *name)
     return PLS_OK;
 }
 
+// ---- parts ----------------------------------------------------------------------------------------------------------------------------------------------------
+
+/// The list that the shape's operations give, in the order of the tree over it.
+static pls_status take_parts(pls_shape *shape)
+{
+    size_t count = 0;
+    const pls_shape_part *given = shape->ops->parts(shape, &count);
+    pls_shape_part *part = NULL;
+    if (count == 0) return PLS_OK;
+    PLS_TRY(pls_allocate(&part, count, sizeof *part, "parts of a shape"));
+    memcpy(part, given, count * sizeof *part);
+    pls_status status = pls_part_tree_make(part, count, &shape->tree);
+    if (status != PLS_OK)
+    {
+        pls_release(&part);
+        return status;
+    }
+    shape->part = part;
+    shape->part_count = count;
+    return PLS_OK;
+}
+
+static void release_parts(pls_shape *shape)
+{
+    void *block;
+    memcpy(&block, &shape->part, sizeof block); // it is ours to free, though nobody's to change
+    pls_release(&block);
+    pls_part_tree_free(shape->tree);
+}
+
+size_t pls_shape_parts_near(const pls_shape *shape, pls_vec3 X, double radius, uint32_t *part, size_t capacity)
+{
+    return shape->tree ? pls_part_tree_near(shape->tree, X, radius, part, capacity) : 0;
+}
+
 // ---- making one -----------------------------------------------------------------------------------------------------------------------------------------
 
 /// Principal axes and moments of the inertia tensor.
@@ -222,22 +264,16 @@ static void find_principal(pls_shape *shape)
     shape->moments = pls_vec(value[0], value[1], value[2]);
 }
 
-static pls_status measure(pls_shape *shape, const char *name)
+/// Volume, centre of mass, principal frame; the bounding sphere is about that centre.
+static pls_status measure_mass(pls_shape *shape, const char *name)
 {
     const pls_shape_ops *ops = shape->ops;
-    shape->convex = ops->convex || (ops->is_convex && ops->is_convex(shape));
-    shape->margin = ops->margin ? ops->margin(shape) : 0.0;
-    shape->polytope = ops->polytope ? ops->polytope(shape) : NULL;
-    if (ops->unbounded) return PLS_OK;
-    PLS_TRY(guess_size(shape, name));
-    find_bounds(shape);
-    PLS_TRY(try_sdf(shape, name));
     pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
     if (ops->mass_properties)
         PLS_TRY(ops->mass_properties(shape, &shape->mass));
     else
-        PLS_TRY(pls_mass_by_quadrature(shape, middle, find_radius(shape, middle), &shape->mass));
-    shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : find_radius(shape, shape->mass.centre);
+        PLS_TRY(pls_mass_by_quadrature(shape, middle, pls_shape_reach(shape, middle), &shape->mass));
+    shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : pls_shape_reach(shape, shape->mass.centre);
     if (!(shape->radius > 0.0) || !isfinite(shape->radius) || !(shape->mass.volume > 0.0) || !isfinite(shape->mass.volume))
         return pls_fail(PLS_INVALID_ARGUMENT, "%s has radius %g m and volume %g; both must be positive and finite", name, shape->radius,
                         shape->mass.volume);
@@ -246,6 +282,23 @@ static pls_status measure(pls_shape *shape, const char *name)
         return pls_fail(PLS_INVALID_ARGUMENT, "the SDF of %s is %g m at its centre of mass, (%g, %g, %g) m; inside it must be negative",
                         name, phi, shape->mass.centre.x, shape->mass.centre.y, shape->mass.centre.z);
     find_principal(shape);
+    return PLS_OK;
+}
+
+static pls_status measure(pls_shape *shape, const char *name)
+{
+    const pls_shape_ops *ops = shape->ops;
+    shape->convex = ops->convex || (ops->is_convex && ops->is_convex(shape));
+    shape->margin = ops->margin ? ops->margin(shape) : 0.0;
+    shape->polytope = ops->polytope ? ops->polytope(shape) : NULL;
+    if (ops->unbounded) return PLS_OK;
+    if (ops->parts) PLS_TRY(take_parts(shape));
+    PLS_TRY(guess_size(shape, name));
+    find_bounds(shape);
+    PLS_TRY(try_sdf(shape, name));
+    if (!ops->wall) return measure_mass(shape, name);
+    shape->moments = pls_vec(0.0, 0.0, 0.0); // the frame of a wall is that in which it is given
+    shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : pls_shape_reach(shape, shape->mass.centre);
     return PLS_OK;
 }
 
@@ -263,14 +316,22 @@ static pls_status check_ops(const pls_shape_ops *ops, int dimension, const char 
     return PLS_OK;
 }
 
-static pls_status fill(pls_shape *shape, const pls_shape_input *input, const char *name)
+/// A shape and its numbers in one block.
+typedef struct shape_with_values
 {
+    pls_shape shape;
+    double values[3 * PLS_MAX_PARAMETERS];
+} shape_with_values;
+
+static pls_status fill(shape_with_values *block, const pls_shape_input *input, const char *name)
+{
+    pls_shape *shape = &block->shape;
     const pls_shape_ops *ops = shape->ops;
     const int count = pls_parameter_values(ops->parameters);
     if (input->values && count > 0)
-        memcpy(shape->values, input->values, (size_t)count * sizeof *shape->values);
+        memcpy(block->values, input->values, (size_t)count * sizeof *block->values);
     else
-        pls_parameters_default(ops->parameters, shape->values);
+        pls_parameters_default(ops->parameters, block->values);
     PLS_TRY(pls_parameters_check(ops->parameters, shape->values, name));
     pls_shape_input mine = *input;
     mine.values = shape->values;
@@ -282,15 +343,20 @@ pls_status pls_shape_make(const pls_shape_ops *ops, int dimension, const pls_sha
 {
     *out = NULL;
     PLS_TRY(check_ops(ops, dimension, name));
-    pls_shape *shape = NULL;
-    PLS_TRY(pls_allocate(&shape, 1, sizeof *shape, "a shape"));
-    *shape =
-        (pls_shape){.ops = ops, .users = 1, .dimension = dimension, .radius = INFINITY, .size = INFINITY, .principal = pls_quat_identity()};
-    pls_status status = fill(shape, input, name);
+    shape_with_values *block = NULL;
+    PLS_TRY(pls_allocate(&block, 1, sizeof *block, "a shape"));
+    block->shape = (pls_shape){.ops = ops,
+                               .users = 1,
+                               .dimension = dimension,
+                               .values = block->values,
+                               .radius = INFINITY,
+                               .size = INFINITY,
+                               .principal = pls_quat_identity()};
+    pls_status status = fill(block, input, name);
     if (status != PLS_OK)
-        pls_shape_free(shape);
+        pls_shape_free(&block->shape);
     else
-        *out = shape;
+        *out = &block->shape;
     return status;
 }
 
@@ -303,6 +369,7 @@ pls_shape *pls_shape_keep(pls_shape *shape)
 void pls_shape_free(pls_shape *shape)
 {
     if (!shape || --shape->users > 0) return;
+    release_parts(shape);
     if (shape->ops->release && shape->data) shape->ops->release(shape->data);
     pls_release(&shape);
 }

@@ -59,21 +59,22 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
     return PLS_OK;
 }
 
+#define ANSWERS                                                                                                                           \
+    .api_version = PLS_API_VERSION, .parameters = parameters, .convex = true, .smooth = true, .sdf = sdf, .gradient = gradient,           \
+    .support = support, .support_gradient = support_gradient, .margin = margin, .polytope = polytope, .bounding_radius = bounding_radius, \
+    .mass_properties = mass_properties
+
 const pls_shape_ops pls_sphere_shape = {
-    .api_version = PLS_API_VERSION,
     .name = "sphere",
     .meaning = "a sphere; in 2D a disc",
-    .parameters = parameters,
     .in_2d = true,
     .in_3d = true,
-    .convex = true,
-    .smooth = true,
-    .sdf = sdf,
-    .gradient = gradient,
-    .support = support,
-    .support_gradient = support_gradient,
-    .margin = margin,
-    .polytope = polytope,
-    .bounding_radius = bounding_radius,
-    .mass_properties = mass_properties,
+    ANSWERS,
+};
+
+const pls_shape_ops pls_disc_shape = {
+    .name = "disc",
+    .meaning = "a disc: a sphere in 2D",
+    .in_2d = true,
+    ANSWERS,
 };

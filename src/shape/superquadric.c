@@ -11,13 +11,14 @@
 // for each nearby part of the surface, hence several starts. An error of n counts squared in the distance.
 
 #include "shape/builtin.h"
+#include "shape/mass_quadrature.h"
 
 #include <string.h>
 
 static const pls_parameter parameters[] = {
     {.name = "half",
      .unit = "m",
-     .meaning = "half axes along x, y, z (2D: the third is not used)",
+     .meaning = "half axes along x, y, z, in 2D along x, y; without the rounding",
      .initial = PLS_REQUIRED,
      .minimum = 0.0,
      .maximum = INFINITY,
@@ -35,10 +36,16 @@ static const pls_parameter parameters[] = {
      .initial = 1.0,
      .minimum = 0.1,
      .maximum = 1.9},
+    {.name = "rounding",
+     .unit = "m",
+     .meaning = "radius of a ball (disc) by which it is thickened; the whole is larger by it",
+     .initial = 0.0,
+     .minimum = 0.0,
+     .maximum = INFINITY},
     {.name = NULL},
 };
 
-enum { NORTH_SOUTH = 3, EAST_WEST = 4, MOST_STEPS = 100 };
+enum { NORTH_SOUTH = 3, EAST_WEST = 4, ROUNDING = 5, MOST_STEPS = 100 };
 
 static double dual_exponent(double epsilon) { return 2.0 / (2.0 - epsilon); }
 
@@ -197,7 +204,9 @@ static place find_normal(const pls_shape *shape, pls_vec3 X)
     return best;
 }
 
-static double sdf(const pls_shape *shape, pls_vec3 X) { return find_normal(shape, X).value; }
+static double sdf(const pls_shape *shape, pls_vec3 X) { return find_normal(shape, X).value - shape->values[ROUNDING]; }
+
+static double margin(const pls_shape *shape) { return shape->values[ROUNDING]; }
 
 static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
 {
@@ -252,13 +261,13 @@ static double bounding_radius(const pls_shape *shape)
     const double *v = shape->values;
     double square = most_of(v[0] * v[0], v[1] * v[1], v[EAST_WEST]);
     if (shape->dimension == 3) square = most_of(square, v[2] * v[2], v[NORTH_SOUTH]);
-    return sqrt(square) * (1.0 + 1e-14);
+    return (sqrt(square) + v[ROUNDING]) * (1.0 + 1e-14);
 }
 
 static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper)
 {
-    const double *v = shape->values;
-    *upper = pls_vec(v[0], v[1], shape->dimension == 2 ? 0.0 : v[2]);
+    const double *v = shape->values, r = v[ROUNDING];
+    *upper = pls_vec(v[0] + r, v[1] + r, shape->dimension == 2 ? 0.0 : v[2] + r);
     *lower = pls_scale(*upper, -1.0);
 }
 
@@ -277,6 +286,7 @@ static double ellipse_moment(double epsilon, double power)
 static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *out)
 {
     const double *v = shape->values, a = v[0], b = v[1], c = v[2], e1 = v[NORTH_SOUTH], e2 = v[EAST_WEST];
+    if (v[ROUNDING] > 0.0) return pls_mass_by_quadrature(shape, pls_vec(0.0, 0.0, 0.0), bounding_radius(shape) * (1.0 + 1e-9), out);
     *out = (pls_mass_properties){0};
     if (shape->dimension == 2)
     {
@@ -308,6 +318,7 @@ const pls_shape_ops pls_superquadric_shape = {
     .gradient = gradient,
     .support = support,
     .support_gradient = support_gradient,
+    .margin = margin,
     .bounding_radius = bounding_radius,
     .bounds = bounds,
     .mass_properties = mass_properties,
