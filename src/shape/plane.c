@@ -21,6 +21,8 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
     return shape->dimension == 2 ? pls_vec(0.0, 1.0, 0.0) : pls_vec(0.0, 0.0, 1.0);
 }
 
+static pls_vec3 proximal(const pls_shape *shape, pls_vec3 X, double step) { return pls_sub(X, pls_scale(gradient(shape, X), step)); }
+
 const pls_shape_ops pls_plane_shape = {
     .api_version = PLS_API_VERSION,
     .name = "plane",
@@ -32,4 +34,5 @@ const pls_shape_ops pls_plane_shape = {
     .convex = true,
     .sdf = sdf,
     .gradient = gradient,
+    .proximal = proximal,
 };

@@ -22,6 +22,14 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
     return length > 0.0 ? pls_scale(X, 1.0 / length) : pls_vec(1.0, 0.0, 0.0);
 }
 
+/// A step towards the centre, at most to it.
+static pls_vec3 proximal(const pls_shape *shape, pls_vec3 X, double step)
+{
+    (void)shape;
+    double length = pls_length(X);
+    return pls_scale(X, length > step ? 1.0 - step / length : 0.0);
+}
+
 // A point with a margin.
 static double margin(const pls_shape *shape) { return shape->values[0]; }
 
@@ -74,6 +82,7 @@ const pls_shape_ops pls_sphere_shape = {
     .support_gradient = support_gradient,
     .margin = margin,
     .polytope = polytope,
+    .proximal = proximal,
     .bounding_radius = bounding_radius,
     .mass_properties = mass_properties,
 };
