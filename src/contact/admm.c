@@ -17,7 +17,7 @@
 #include "contact/admm.h"
 #include "shape/proximal.h"
 
-static const double step_of_size = 0.3;  // of the proximal map, in smaller bounding radii
+static const double step_of_size = 0.5;  // of the proximal map, in smaller bounding radii
 static const double far_expected = 0.05; // a change beyond this many sizes is no motion to go on with
 
 /// The least SDF of `field` over `set`.

@@ -12,10 +12,10 @@ enum {
 /// P1 eq. 14: `on_a` is the point of A that lies deepest in B, `on_b` that of B deepest in A, xi = on_b - on_a. Overlapping, delta = |xi| and normal = -xi / |xi|: not the
 /// penetration depth where corners or edges overlap. In a gap the closest points, delta = -|xi|.
 ///
-/// Iterates until they change by less than `tolerance` times the smaller bounding radius; phi at the points is then within 10 `tolerance` times the diameter of the least
-/// (not the points: on near-parallel faces these have far to go). Points no further apart than that have no direction: then the normal is the mean of the two multipliers.
-/// `converged` is false if that was not reached, or if one shape has swallowed the other's deepest point, where eq. 14 has no solution of this kind. `iterations` are the more
-/// of the two problems'. `state` is brought up to date in body frames; all zero: cold.
+/// Iterates until they change by less than `tolerance` times the size, the smaller bounding radius. phi at a point is then above the least by at most
+/// 2 tolerance (size + D), D the distance of the point from the true one: little, but on nearly parallel faces D is not. Points no further apart than tolerance times size have no direction: the
+/// normal is then that of the multipliers, the surfaces' own. `converged` is false if that was not reached, or if one shape has swallowed the other's deepest point, where
+/// eq. 14 has no solution of this kind. `iterations` are those of the slower of the two problems. `state` is brought up to date, in body frames; all zero: cold.
 void pls_admm_depth(const pls_posed *a, const pls_posed *b, double tolerance, double *state, pls_overlap *out);
 
 #endif

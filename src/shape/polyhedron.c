@@ -220,8 +220,8 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
 
 #define ANSWERS                                                                                                               \
     .api_version = PLS_API_VERSION, .convex = true, .prepare = prepare, .release = release, .sdf = sdf, .gradient = gradient, \
-    .support = support, .margin = margin, .polytope = polytope, .proximal = proximal, .bounding_radius = bounding_radius, .bounds = bounds,         \
-    .mass_properties = mass_properties
+    .support = support, .margin = margin, .polytope = polytope, .proximal = proximal, .bounding_radius = bounding_radius,     \
+    .bounds = bounds, .mass_properties = mass_properties
 
 const pls_shape_ops pls_polyhedron_shape = {
     .name = "polyhedron",
