@@ -136,6 +136,32 @@ static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper)
     *lower = pls_scale(*upper, -1.0);
 }
 
+/// A step back along the gradient, unless that crosses the ridge of phi: the middle plane of the least half axis c, where phi = -c s and
+/// s^2 = 1 - sum of y_i^2 / (e_i^2 - c^2) over the others. On it y_i = x_i / (1 + step c / ((e_i^2 - c^2) s)): one increasing equation for s.
+static pls_vec3 proximal(const pls_shape *shape, pls_vec3 X, double step)
+{
+    const double *e = shape->values, c = least_axis(shape), x[3] = {X.x, X.y, X.z};
+    pls_vec3 n = gradient(shape, X), Y = pls_sub(X, pls_scale(n, step));
+    double phi = pls_dot(n, X) - support_function(shape, n), y[3] = {0.0, 0.0, 0.0}, low = 0.0, high = 1.0;
+    if (phi >= step || sdf(shape, Y) - (phi - step) < 1e-13 * bounding_radius(shape)) return Y;
+    for (int k = 0; k < 200 && high - low > 0.0; ++k)
+    {
+        double s = 0.5 * (low + high), square = s * s;
+        for (int i = 0; i < shape->dimension; ++i)
+        {
+            double w = (e[i] - c) * (e[i] + c);
+            y[i] = w > 0.0 ? x[i] * s * w / (s * w + step * c) : 0.0;
+            if (w > 0.0) square += y[i] * y[i] / w;
+        }
+        if (s == low || s == high) break;
+        if (square < 1.0)
+            low = s;
+        else
+            high = s;
+    }
+    return pls_vec(y[0], y[1], y[2]);
+}
+
 static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *out)
 {
     const double *e = shape->values, xx = e[0] * e[0], yy = e[1] * e[1], zz = e[2] * e[2];
@@ -149,10 +175,10 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
     return PLS_OK;
 }
 
-#define ANSWERS                                                                                                                       \
-    .api_version = PLS_API_VERSION, .parameters = parameters, .convex = true, .smooth = true, .sdf = sdf, .gradient = gradient,       \
-    .support = support, .support_gradient = support_gradient, .margin = margin, .bounding_radius = bounding_radius, .bounds = bounds, \
-    .mass_properties = mass_properties
+#define ANSWERS                                                                                                                           \
+    .api_version = PLS_API_VERSION, .parameters = parameters, .convex = true, .smooth = true, .sdf = sdf, .gradient = gradient,           \
+    .proximal = proximal, .support = support, .support_gradient = support_gradient, .margin = margin, .bounding_radius = bounding_radius, \
+    .bounds = bounds, .mass_properties = mass_properties
 
 const pls_shape_ops pls_ellipsoid_shape = {
     .name = "ellipsoid",

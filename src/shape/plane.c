@@ -21,8 +21,11 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
     return shape->dimension == 2 ? pls_vec(0.0, 1.0, 0.0) : pls_vec(0.0, 0.0, 1.0);
 }
 
-#define ANSWERS \
-    .api_version = PLS_API_VERSION, .parameters = parameters, .unbounded = true, .convex = true, .sdf = sdf, .gradient = gradient
+static pls_vec3 proximal(const pls_shape *shape, pls_vec3 X, double step) { return pls_sub(X, pls_scale(gradient(shape, X), step)); }
+
+#define ANSWERS                                                                                                                    \
+    .api_version = PLS_API_VERSION, .parameters = parameters, .unbounded = true, .convex = true, .sdf = sdf, .gradient = gradient, \
+    .proximal = proximal
 
 const pls_shape_ops pls_plane_shape = {
     .name = "plane",

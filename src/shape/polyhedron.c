@@ -8,6 +8,7 @@
 #include "shape/mass_quadrature.h"
 #include "shape/mesh.h"
 #include "shape/polytope.h"
+#include "shape/proximal.h"
 
 #include "base/alloc.h"
 
@@ -246,6 +247,23 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
     return n;
 }
 
+/// As from any SDF (see proximal.c), whose planes are faces here: exact after as many turns as faces matter, and a few.
+static pls_vec3 proximal(const pls_shape *shape, pls_vec3 X, double step)
+{
+    enum { MOST_TURNS = 100 };
+    pls_vec3 n = {0.0, 0.0, 0.0}, Y = X;
+    pls_cut_model model = {.count = 0, .value = -INFINITY};
+    for (int k = 0; k < MOST_TURNS; ++k)
+    {
+        double phi = distance(shape->data, Y, &n);
+        if (!(phi - model.value > 1e-15 * shape->size)) break;
+        if (!pls_cut_model_add(&model, (pls_cut){n, phi + pls_dot(n, pls_sub(X, Y))}, step)) break;
+        Y = pls_sub(X, pls_scale(model.slope, step));
+        if (k == 0 && phi >= step) break; // outside, and still so
+    }
+    return Y;
+}
+
 static pls_vec3 support(const pls_shape *shape, pls_vec3 n) { return pls_hull_support(shape->data, n); }
 
 static double margin(const pls_shape *shape) { return shape->values[ROUNDED]; }
@@ -329,9 +347,10 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
     return PLS_OK;
 }
 
-#define ANSWERS                                                                                                               \
-    .api_version = PLS_API_VERSION, .convex = true, .release = release, .sdf = sdf, .gradient = gradient, .support = support, \
-    .margin = margin, .polytope = polytope, .bounding_radius = bounding_radius, .bounds = bounds, .mass_properties = mass_properties
+#define ANSWERS                                                                                                                 \
+    .api_version = PLS_API_VERSION, .convex = true, .release = release, .sdf = sdf, .gradient = gradient, .proximal = proximal, \
+    .support = support, .margin = margin, .polytope = polytope, .bounding_radius = bounding_radius, .bounds = bounds,           \
+    .mass_properties = mass_properties
 
 const pls_shape_ops pls_polyhedron_shape = {
     .name = "polyhedron",

@@ -22,6 +22,14 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
     return length > 0.0 ? pls_scale(X, 1.0 / length) : pls_vec(1.0, 0.0, 0.0);
 }
 
+/// A step towards the centre, at most to it.
+static pls_vec3 proximal(const pls_shape *shape, pls_vec3 X, double step)
+{
+    (void)shape;
+    double length = pls_length(X);
+    return pls_scale(X, length > step ? 1.0 - step / length : 0.0);
+}
+
 // A point with a margin.
 static double margin(const pls_shape *shape) { return shape->values[0]; }
 
@@ -59,10 +67,10 @@ static pls_status mass_properties(const pls_shape *shape, pls_mass_properties *o
     return PLS_OK;
 }
 
-#define ANSWERS                                                                                                                           \
-    .api_version = PLS_API_VERSION, .parameters = parameters, .convex = true, .smooth = true, .sdf = sdf, .gradient = gradient,           \
-    .support = support, .support_gradient = support_gradient, .margin = margin, .polytope = polytope, .bounding_radius = bounding_radius, \
-    .mass_properties = mass_properties
+#define ANSWERS                                                                                                                 \
+    .api_version = PLS_API_VERSION, .parameters = parameters, .convex = true, .smooth = true, .sdf = sdf, .gradient = gradient, \
+    .proximal = proximal, .support = support, .support_gradient = support_gradient, .margin = margin, .polytope = polytope,     \
+    .bounding_radius = bounding_radius, .mass_properties = mass_properties
 
 const pls_shape_ops pls_sphere_shape = {
     .name = "sphere",

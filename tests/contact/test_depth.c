@@ -164,7 +164,7 @@ static void spheres_in_closed_form(void **state)
 static void ellipsoids_against_a_search(void **state)
 {
     (void)state;
-    const double first[3] = {1.0, 0.7, 0.5}, second[3] = {0.6, 1.1, 0.8}, radius = 0.7;
+    const double first[4] = {1.0, 0.7, 0.5}, second[4] = {0.6, 1.1, 0.8}, radius = 0.7;
     for (int dimension = 2; dimension <= 3; ++dimension)
     {
         pls_shape *a = make(&pls_ellipsoid_shape, dimension, first), *b = make(&pls_ellipsoid_shape, dimension, second),
