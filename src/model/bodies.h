@@ -110,7 +110,7 @@ enum pls_body_flags {
     X("angular_velocity", PLS_F64, 3, PERSISTS | FRAME, "rad/s", spin, pls_body_spin, wx, "angular velocity, world frame")       \
     X("inv_inertia", PLS_F64, 1, PERSISTS, "1/(kg m^2)", load, pls_body_load, inv_inertia, "inverse moment of isotropic bodies") \
     X("orientation", PLS_F64, 4, PERSISTS | FRAME, "", orientation, pls_body_orientation, w,                                     \
-      "unit quaternion w x y z, grain frame to world")                                                                           \
+      "unit quaternion w x y z, principal axes of the shape to world")                                                           \
     X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                            \
     X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                 \
     X("energy_damped", PLS_F64, 1, PERSISTS, "J", damped, double, , "half of the energy taken by its contacts' dashpots")        \

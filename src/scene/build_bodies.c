@@ -149,6 +149,8 @@ static pls_status add_body(pls_builder *b, const entry_plan *plan, const pls_poi
     def.position = points->position[k];
     if (points->scale) def.scale = points->scale[k];
     if (points->orientation) def.orientation = points->orientation[k];
+    def.orientation =
+        pls_quat_multiply(def.orientation, shape->made->principal); // scenes turn the shape's own frame, worlds its principal axes
     PLS_TRY(initial_velocity(plan, points, k, &def));
     uniform_inertia(shape->made, &def);
     if (plan->motion) PLS_TRY(pls_build_motion_context(b, plan->driven, plan->motion, &def.motion));

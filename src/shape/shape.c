@@ -22,6 +22,8 @@ enum {
 static const double steepness = 1e-9;  ///< by which an SDF may be steeper than 1, for round-off
 static const double foot_error = 1e-3; ///< of the size: how far from the surface the foot of a point outside may lie
 static const double far_away = 20.0;   ///< sizes from which support points are sought
+static const double remote = 1e3;      ///< sizes from which shapes that are not convex are seen first
+static const double horizon = 1e6;     ///< sizes from where the distance tells the extent of a shape to within size / 2e6
 
 double pls_shape_sdf(const pls_shape *shape, pls_vec3 X) { return shape->ops->sdf(shape, X); }
 
@@ -49,10 +51,19 @@ pls_vec3 pls_shape_nearest(const pls_shape *shape, pls_vec3 X)
     return X;
 }
 
+/// Where to begin. Of a set that is not convex, the point nearest to one so far away that nothing else counts: from there the climb ends at the highest place or at one
+/// as good as that. A little beside the axis, on which all places around it may be as near as each other (a ring's).
+static pls_vec3 begin_support(const pls_shape *shape, pls_vec3 n)
+{
+    if (shape->convex) return pls_vec(0.0, 0.0, 0.0);
+    pls_vec3 beside = pls_vec(0.013 * shape->size, 0.029 * shape->size, shape->dimension == 3 ? 0.019 * shape->size : 0.0);
+    return pls_shape_nearest(shape, pls_add(beside, pls_scale(n, remote * shape->size)));
+}
+
 static pls_vec3 support_from_sdf(const pls_shape *shape, pls_vec3 n)
 {
     double t = far_away * shape->size;
-    pls_vec3 p = pls_vec(0.0, 0.0, 0.0);
+    pls_vec3 p = begin_support(shape, n);
     for (int k = 0; k < SUPPORT_TURNS; ++k)
     {
         pls_vec3 next = pls_shape_nearest(shape, pls_add(p, pls_scale(n, t)));
@@ -104,6 +115,15 @@ static pls_status guess_size(pls_shape *shape, const char *name)
                     "%s has no end: %g m away its SDF still says that it is near. Bounded shapes only, and true distances", name, t);
 }
 
+/// How far the shape reaches along e. The distance of a far point t e is t - h(e) + s^2 / 2t or less, s < 2 size being how far beside the axis the furthest point lies.
+/// For convex shapes the support point is all; others may have several places that are about as high.
+static double extent(const pls_shape *shape, pls_vec3 e)
+{
+    double along = pls_dot(pls_shape_support(shape, e), e), t = horizon * shape->size;
+    if (shape->convex || shape->ops->support) return along;
+    return fmax(along, t - shape->ops->sdf(shape, pls_scale(e, t))) + 2.0 * shape->size / horizon;
+}
+
 static void find_bounds(pls_shape *shape)
 {
     if (shape->ops->bounds)
@@ -114,8 +134,8 @@ static void find_bounds(pls_shape *shape)
     double *lower[3] = {&shape->lower.x, &shape->lower.y, &shape->lower.z}, *upper[3] = {&shape->upper.x, &shape->upper.y, &shape->upper.z};
     for (int a = 0; a < shape->dimension; ++a)
     {
-        *upper[a] = pls_dot(pls_shape_support(shape, axes[2 * a]), axes[2 * a]);
-        *lower[a] = -pls_dot(pls_shape_support(shape, axes[2 * a + 1]), axes[2 * a + 1]);
+        *upper[a] = extent(shape, axes[2 * a]);
+        *lower[a] = -extent(shape, axes[2 * a + 1]);
     }
 }
 

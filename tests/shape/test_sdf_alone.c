@@ -106,6 +106,32 @@ static void a_torus(void **state)
     expect_near(shape->moments.z, volume * (1.0 + 0.75 * 0.0625), shape->mass.error);
     expect_near(shape->moments.x, volume * (0.5 + 0.625 * 0.0625), shape->mass.error);
     expect_near(shape->radius, 1.25, 1e-6);
+    // Its top is a ring, as near to the points of the axis above it all around.
+    expect_near(shape->upper.x, 1.25, 1e-5);
+    expect_near(shape->lower.y, -1.25, 1e-5);
+    expect_near(shape->upper.z, 0.25, 1e-5);
+    expect_near(shape->lower.z, -0.25, 1e-5);
+    assert_true(shape->upper.z >= 0.25 && shape->lower.x <= -1.25);
+    expect_near(pls_shape_support(shape, pls_vec(0.0, 0.0, 1.0)).z, 0.25, 1e-6);
+    pls_shape_free(shape);
+}
+
+/// A disc of radius 0.5, and one of radius 0.1 that reaches further up by a little, but far from the axis.
+static double disc_and_outlier(const pls_shape *shape, pls_vec3 X)
+{
+    (void)shape;
+    return fmin(pls_length(X) - 0.5, pls_length(pls_sub(X, pls_vec(2.0, 0.41, 0.0))) - 0.1);
+}
+
+static void the_highest_place_counts(void **state)
+{
+    (void)state;
+    const pls_shape_ops ops = alone(disc_and_outlier);
+    pls_shape *shape = make(&ops, 2);
+    expect_near(shape->upper.y, 0.51, 1e-5);
+    assert_true(shape->upper.y >= 0.51);
+    expect_near(shape->upper.x, 2.1, 1e-5);
+    expect_near(shape->lower.x, -0.5, 1e-5);
     pls_shape_free(shape);
 }
 
@@ -190,8 +216,8 @@ static void sdfs_that_lie(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ball_off_the_centre), cmocka_unit_test(a_box_that_is_turned), cmocka_unit_test(a_torus),
-        cmocka_unit_test(a_density_that_varies), cmocka_unit_test(sdfs_that_lie),
+        cmocka_unit_test(a_ball_off_the_centre),    cmocka_unit_test(a_box_that_is_turned),  cmocka_unit_test(a_torus),
+        cmocka_unit_test(the_highest_place_counts), cmocka_unit_test(a_density_that_varies), cmocka_unit_test(sdfs_that_lie),
     };
     return cmocka_run_group_tests_name("sdf alone", tests, NULL, NULL);
 }
