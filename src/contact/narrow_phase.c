@@ -51,6 +51,12 @@ static pls_vec3 core_support(const void *self, pls_vec3 n)
     return pls_posed_world(p, p->shape->ops->support(p->shape, pls_posed_turn_back(p, n)));
 }
 
+static double core_sdf(const void *self, pls_vec3 X)
+{
+    const pls_posed *p = self;
+    return pls_posed_sdf(p, X) + p->shape->margin * p->scale;
+}
+
 static pls_vec3 support_from_sdf(const void *self, pls_vec3 n) { return pls_posed_support(self, pls_unit(n)); }
 
 static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
@@ -59,6 +65,7 @@ static pls_convex convex_of(const pls_posed *p)
 {
     const bool alone = !p->shape->ops->support;
     return (pls_convex){.support = alone ? support_from_sdf : core_support,
+                        .sdf = alone ? NULL : core_sdf,
                         .self = p,
                         .centre = centre_of(p),
                         .axis = {p->x, p->y, p->z},

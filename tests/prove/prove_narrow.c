@@ -28,8 +28,8 @@ static uint64_t row(int dimension, int a, int b, const int numbers[4])
     narrow_random(dimension, a, b, numbers[0], 1, &cold);
     narrow_tumble(dimension, a, b, numbers[1], numbers[2], numbers[3], 2, &warm);
     add(&both, &cold), add(&both, &warm);
-    printf("| %s - %s | %llu | %.1e | %.1e | %.1e | %.1e | %llu | %llu | %.2f | %llu | %llu | %.0f |\n", narrow_name(dimension, a), narrow_name(dimension, b),
-           (unsigned long long)both.checked, both.depth, both.depth_relative, both.normal, both.points,
+    printf("| %s - %s | %llu | %.1e | %.1e | %.1e | %.1e | %llu | %llu | %.2f | %llu | %llu | %.0f |\n", narrow_name(dimension, a),
+           narrow_name(dimension, b), (unsigned long long)both.checked, both.depth, both.depth_relative, both.normal, both.points,
            (unsigned long long)(both.wrong + both.not_finite), (unsigned long long)both.counts.failures,
            (double)warm.counts.iterations / (double)warm.counts.queries, (unsigned long long)warm.counts.restarts,
            (unsigned long long)warm.counts.fallbacks, warm.nanoseconds);
@@ -40,7 +40,9 @@ static uint64_t row(int dimension, int a, int b, const int numbers[4])
 static uint64_t table(int dimension, const int numbers[4], const char *only)
 {
     uint64_t bad = 0;
-    printf("\n%dD\n\n| pair | compared | depth | of depth | normal | points | wrong | failures | iterations | restarts | fallbacks | ns |\n", dimension);
+    printf(
+        "\n%dD\n\n| pair | compared | depth | of depth | normal | points | wrong | failures | iterations | restarts | fallbacks | ns |\n",
+        dimension);
     printf("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     for (int b = 0; narrow_shape(dimension, b); ++b)
         for (int a = 0; a <= b; ++a)

@@ -59,10 +59,10 @@ static const shape_row rows_3d[NARROW_SHAPES_3D] = {
 };
 static const shape_row rows_2d[NARROW_SHAPES_2D] = {
     {"disc", &pls_sphere_shape, POINTS, {0.6}, 0},
-    {"box", &pls_box_shape, POINTS, {0.6, 0.4, 0.0}, 0},
+    {"box", &pls_box_shape, POINTS, {0.6, 0.4, 1.0}, 0},
     {"polygon 12", &pls_polygon_shape, POINTS, {0.0}, 12},
     {"capsule", &pls_capsule_shape, POINTS, {0.3, 0.9}, 0},
-    {"ellipse", &pls_ellipsoid_shape, ELLIPSOID, {0.7, 0.4, 0.0}, 0},
+    {"ellipse", &pls_ellipsoid_shape, ELLIPSOID, {0.7, 0.4, 1.0}, 0},
     {"sdf-only cone", &cone_ops, CONE, {0.0}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
@@ -80,8 +80,7 @@ const char *narrow_name(int dimension, int number) { return row_of(dimension, nu
 static pls_vec3 random_unit(pls_random *random, int dimension)
 {
     pls_vec3 v;
-    do
-    {
+    do {
         v.x = pls_random_normal(random), v.y = pls_random_normal(random), v.z = pls_random_normal(random);
         if (dimension == 2) v.z = 0.0;
     } while (!(pls_dot(v, v) > 1e-6));
@@ -116,7 +115,10 @@ void narrow_free_shapes(void)
         for (int k = 0; k < NARROW_MOST_SHAPES; ++k) pls_shape_free(made[d][k]), made[d][k] = NULL;
 }
 
-static bool is_polytope(int dimension, int number) { return row_of(dimension, number)->form == POINTS || row_of(dimension, number)->form == PLANE; }
+static bool is_polytope(int dimension, int number)
+{
+    return row_of(dimension, number)->form == POINTS || row_of(dimension, number)->form == PLANE;
+}
 
 double narrow_allowed(int dimension, int a, int b) { return is_polytope(dimension, a) && is_polytope(dimension, b) ? 1e-8 : 1e-6; }
 
@@ -136,7 +138,8 @@ static void set_pose(body *s, pls_posed pose)
     s->pose = pose;
     s->margin = s->shape->margin * pose.scale;
     if (s->row->form == POINTS)
-        for (uint32_t k = 0; k < s->shape->polytope->vertex_count; ++k) s->vertex[k] = pls_posed_world(&pose, s->shape->polytope->vertex[k]);
+        for (uint32_t k = 0; k < s->shape->polytope->vertex_count; ++k)
+            s->vertex[k] = pls_posed_world(&pose, s->shape->polytope->vertex[k]);
 }
 
 /// Least of the norm |u| v of two components with exponents P: (u^P + v^P)^(1/P), and its two derivatives.
@@ -156,30 +159,34 @@ static pls_vec3 own_support(const body *s, pls_vec3 n)
     const bool flat = s->shape->dimension == 2;
     switch (s->row->form)
     {
-    case CYLINDER: {
-        double side = hypot(n.x, n.y);
-        return pls_vec(side > 0.0 ? v[0] * n.x / side : 0.0, side > 0.0 ? v[0] * n.y / side : 0.0, copysign(0.5 * v[1], n.z));
-    }
-    case ELLIPSOID: {
-        pls_vec3 m = pls_vec(v[0] * n.x, v[1] * n.y, flat ? 0.0 : v[2] * n.z);
-        double h = pls_length(m);
-        return pls_vec(v[0] * m.x / h, v[1] * m.y / h, flat ? 0.0 : v[2] * m.z / h);
-    }
-    case SUPERQUADRIC: {
-        double du, dv, dh, dw, h = dual_norm(v[0] * fabs(n.x), v[1] * fabs(n.y), 2.0 / (2.0 - v[4]), &du, &dv);
-        dual_norm(h, v[2] * fabs(n.z), 2.0 / (2.0 - v[3]), &dh, &dw);
-        return pls_vec(copysign(v[0] * dh * du, n.x), copysign(v[1] * dh * dv, n.y), copysign(v[2] * dw, n.z));
-    }
-    case CONE: {
-        double axial = flat ? n.y : n.z, high = cone_length * axial + cone_high > cone_low ? 1.0 : 0.0;
-        pls_vec3 p = pls_scale(n, high == 1.0 ? cone_high : cone_low);
-        if (flat)
-            p.y += high * cone_length;
-        else
-            p.z += high * cone_length;
-        return p;
-    }
-    default: return pls_vec(0.0, 0.0, 0.0);
+        case CYLINDER:
+        {
+            double side = hypot(n.x, n.y);
+            return pls_vec(side > 0.0 ? v[0] * n.x / side : 0.0, side > 0.0 ? v[0] * n.y / side : 0.0, copysign(0.5 * v[1], n.z));
+        }
+        case ELLIPSOID:
+        {
+            pls_vec3 m = pls_vec(v[0] * n.x, v[1] * n.y, flat ? 0.0 : v[2] * n.z);
+            double h = pls_length(m);
+            return pls_vec(v[0] * m.x / h, v[1] * m.y / h, flat ? 0.0 : v[2] * m.z / h);
+        }
+        case SUPERQUADRIC:
+        {
+            double du, dv, dh, dw, h = dual_norm(v[0] * fabs(n.x), v[1] * fabs(n.y), 2.0 / (2.0 - v[4]), &du, &dv);
+            dual_norm(h, v[2] * fabs(n.z), 2.0 / (2.0 - v[3]), &dh, &dw);
+            return pls_vec(copysign(v[0] * dh * du, n.x), copysign(v[1] * dh * dv, n.y), copysign(v[2] * dw, n.z));
+        }
+        case CONE:
+        {
+            double axial = flat ? n.y : n.z, high = cone_length * axial + cone_high > cone_low ? 1.0 : 0.0;
+            pls_vec3 p = pls_scale(n, high == 1.0 ? cone_high : cone_low);
+            if (flat)
+                p.y += high * cone_length;
+            else
+                p.z += high * cone_length;
+            return p;
+        }
+        default: return pls_vec(0.0, 0.0, 0.0);
     }
 }
 
@@ -319,7 +326,8 @@ static least by_search(const body *a, const body *b, pls_vec3 answer, pls_random
     for (int k = 0; k <= KEPT; ++k) best[k] = (least){INFINITY, answer};
     for (int k = 0; k < count; ++k)
     {
-        double z = dimension == 2 ? 0.0 : 1.0 - (2.0 * k + 1.0) / count, angle = dimension == 2 ? 2.0 * M_PI * k / count : 2.399963229728653 * k;
+        double z = dimension == 2 ? 0.0 : 1.0 - (2.0 * k + 1.0) / count,
+               angle = dimension == 2 ? 2.0 * M_PI * k / count : 2.399963229728653 * k;
         least t = {INFINITY, {0.0, 0.0, 0.0}};
         try_normal(a, b, pls_vec(sqrt(1.0 - z * z) * cos(angle), sqrt(1.0 - z * z) * sin(angle), z), &t);
         // Keep the best ones that are not neighbours.
@@ -381,7 +389,8 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
     if (error > allowed || (apart && points > allowed))
     {
         if (getenv("NARROW_VERBOSE") && tally->wrong < 5)
-            fprintf(stderr, "wrong: delta %.9g of the size, error %.3g, attained %.3g, points %.3g\n", delta / size, error, attained, points);
+            fprintf(stderr, "wrong: delta %.9g of the size, error %.3g, attained %.3g, points %.3g\n", delta / size, error, attained,
+                    points);
         ++tally->wrong;
     }
 }
