@@ -18,6 +18,7 @@
 #include "contact/narrow_phase.h"
 
 #include "contact/convex.h"
+#include "contact/polytope_depth.h"
 #include "contact/sdf_depth.h"
 
 #include <string.h>
@@ -27,10 +28,10 @@ enum {
     WINNER = 0, ///< enum winner
     NORMAL = 1, ///< in A's frame, 3
     DELTA = 4,  ///< [m]
-    OWN = 5,    ///< what the winner needs: `pls_depth_state` from its `size`, or `pls_sdf_state`
+    OWN = 5,    ///< what the winner needs: `pls_depth_state` from its `size`, the memory of `pls_polytope_depth`, or `pls_sdf_state`
     ADMM = 8    ///< 24, for that solver alone
 };
-enum winner { NOTHING, INCREMENTAL, NEWTON, BFGS, PROJECTIONS, EXPANDING };
+enum winner { NOTHING, INCREMENTAL, POLYTOPES, NEWTON, BFGS, PROJECTIONS, EXPANDING };
 
 static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
 
@@ -184,6 +185,27 @@ static pls_depth expand(const query *q)
     else
         forget(q);
     return d;
+}
+
+static pls_depth incremental(const query *q);
+
+static pls_depth polytopes(const query *q)
+{
+    pls_depth d;
+    const enum winner last = last_winner(q);
+    if (q->a->shape->dimension == 3)
+    {
+        if (last != POLYTOPES) forget(q);
+        if (pls_polytope_depth(q->a, q->b, q->state + OWN, &d))
+        {
+            q->state[WINNER] = POLYTOPES;
+            count(q, d.iterations, &d);
+            return d;
+        }
+        ++q->counts->fallbacks;
+        forget(q);
+    }
+    return incremental(q);
 }
 
 static pls_depth incremental(const query *q)
@@ -378,7 +400,7 @@ static solver *const table[KINDS][KINDS] = {
 //   B:           BALL       POLYTOPE     SMOOTH       SUPPORT      SDF        CONCAVE    HALF_SPACE
 /* A */
 [BALL]       = {ball_ball, ball_any,    ball_any,    ball_any,    ball_any,  ball_any,  on_plane},
-[POLYTOPE]   = {any_ball,  incremental, incremental, incremental, from_sdfs, from_grid, on_plane},
+[POLYTOPE]   = {any_ball,  polytopes,   incremental, incremental, from_sdfs, from_grid, on_plane},
 [SMOOTH]     = {any_ball,  incremental, newton,      incremental, from_sdfs, from_grid, on_plane},
 [SUPPORT]    = {any_ball,  incremental, incremental, incremental, from_sdfs, from_grid, on_plane},
 [SDF]        = {any_ball,  from_sdfs,   from_sdfs,   from_sdfs,   from_sdfs, from_grid, on_plane},
