@@ -17,6 +17,9 @@ typedef struct pls_convex
 {
     pls_vec3 (*support)(const void *self,
                         pls_vec3 n); ///< the core's point furthest along n (not zero, not always of length one), in the world
+    double (*sdf)(
+        const void *self,
+        pls_vec3 X); ///< signed distance of the core, at least exact enough inside not to tell of more depth than there is; null: not known
     const void *self;
     pls_vec3 centre;  ///< a point that moves with the body, inside [m]
     pls_vec3 axis[3]; ///< the body's, in the world; also in 2D
@@ -34,7 +37,7 @@ typedef struct pls_depth
     int iterations;      ///< of GJK and EPA
     int support_calls;   ///< pairs of support points asked for
     bool converged;      ///< if not, `delta` still is F(normal): an upper bound of the depth
-    bool local;          ///< overlapping cores, followed from the step before: perhaps not the least depth of all
+    bool local;          ///< overlapping cores, and no proof that this is the least depth of all
 } pls_depth;
 
 /// A support point of M and the points of A and B it comes from.

@@ -1,8 +1,11 @@
 // incremental_depth.c -- distance or depth of a pair, from scratch or from where the last step left it.
 //
 // Cores that are apart are GJK's, whose last simplex is mostly still the nearest in the next step. Cores that overlap are pushed apart along the
-// last normal, by the last depth and a bit: GJK then gives a new normal, and the fixed point of that is a local minimum of F. It is the global one
-// as long as depths are small and the pair was followed from a gap, so that the expanding polytope is asked only for new or deep overlaps.
+// last normal, by the last depth and a bit: GJK then gives a new normal, and the fixed point of that is a local minimum of F.
+//
+// Is it the least of all? A ball of radius delta about a point of B, if all in A, proves so: F is at least delta in all directions. So where the SDF of
+// A is -delta at B's witness point (or the other way round) no more is asked. That is so for faces away from their edges and all that is rounder than deep. Else the
+// expanding polytope decides.
 
 #include "contact/convex.h"
 
@@ -10,9 +13,10 @@
 
 enum { MOST_PUSHES = 60 };
 static const double push = 0.02;    // beyond the depth, of the smaller size
-static const double deep = 0.02;    // overlaps from here are solved from scratch
 static const double exact = 1e-13;  // of EPA on polytopes
 static const double roughly = 1e-3; // of EPA on smooth sets, to be refined
+static const double finely = 1e-9;  // of EPA on smooth sets where there is no proof
+static const double proof = 1e-9;   // by which a ball may be too small, of the size
 
 static double smaller(const pls_convex *a, const pls_convex *b) { return fmin(a->size, b->size); }
 
@@ -101,6 +105,20 @@ static bool follow(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls
     return false;
 }
 
+/// No direction has less depth: see above.
+static bool is_least(const pls_convex *a, const pls_convex *b, const pls_simplex *s, const pls_depth *d)
+{
+    if (d->delta <= 0.0) return true;
+    double enough = d->delta - proof * smaller(a, b);
+    pls_vec3 on_a = pls_vec(0.0, 0.0, 0.0), on_b = on_a;
+    for (int k = 0; k < s->count; ++k)
+    {
+        on_a = pls_add(on_a, pls_scale(s->point[k].a, s->weight[k]));
+        on_b = pls_add(on_b, pls_scale(s->point[k].b, s->weight[k]));
+    }
+    return (a->sdf && -a->sdf(a->self, on_b) >= enough) || (b->sdf && -b->sdf(b->self, on_a) >= enough);
+}
+
 /// Cores that overlap, by the expanding polytope; smooth ones are refined.
 static void overlap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
 {
@@ -113,16 +131,23 @@ static void overlap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s,
     pls_simplex t = {.count = 0};
     pls_depth finer = found;
     finer.converged = false;
-    if (follow(a, b, &t, &finer) && finer.delta <= found.delta + 1e-9 * scale)
+    if (follow(a, b, &t, &finer) && is_least(a, b, &t, &finer))
     {
         *d = finer, *s = t;
         d->local = false;
         return;
     }
-    pls_simplex none = {.count = 0};
-    *d = pls_epa(a, b, 1e-9 * scale, &none);
-    d->iterations += finer.iterations, d->support_calls += finer.support_calls;
-    *s = none;
+    pls_simplex fine = {.count = 0};
+    found = pls_epa(a, b, finely * scale, &fine);
+    found.iterations += finer.iterations, found.support_calls += finer.support_calls;
+    if (finer.converged && finer.delta <= found.delta) fine = t, found.delta = finer.delta, found.normal = finer.normal;
+    *s = fine, *d = found;
+    // The polytope is near, which is best; its nearest face is flat, though, where the set is round.
+    finer = found, t.count = 0;
+    finer.converged = false;
+    if (follow(a, b, &t, &finer) && finer.delta <= found.delta + finely * scale) *d = finer, *s = t;
+    d->converged = found.converged;
+    d->local = false;
 }
 
 static void from_scratch(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
@@ -191,8 +216,9 @@ static bool from_state(const pls_convex *a, const pls_convex *b, const pls_depth
         s->count = 0;
         d->normal = n, d->delta = depth_along(a, b, n, d);
     }
-    if (d->delta > deep * smaller(a, b)) return false;
-    return follow(a, b, s, d) && d->delta <= deep * smaller(a, b);
+    if (!follow(a, b, s, d)) return false;
+    d->local = !is_least(a, b, s, d);
+    return !d->local;
 }
 
 pls_depth pls_depth_warm(const pls_convex *a, const pls_convex *b, pls_depth_state *state)

@@ -18,6 +18,7 @@
 #include "contact/narrow_phase.h"
 
 #include "contact/convex.h"
+#include "contact/polytope_depth.h"
 #include "contact/sdf_depth.h"
 
 #include <string.h>
@@ -27,10 +28,10 @@ enum {
     WINNER = 0, ///< enum winner
     NORMAL = 1, ///< in A's frame, 3
     DELTA = 4,  ///< [m]
-    OWN = 5,    ///< what the winner needs: `pls_depth_state` from its `size`, or `pls_sdf_state`
+    OWN = 5,    ///< what the winner needs: `pls_depth_state` from its `size`, the memory of `pls_polytope_depth`, or `pls_sdf_state`
     ADMM = 8    ///< 24, for that solver alone
 };
-enum winner { NOTHING, INCREMENTAL, NEWTON, BFGS, PROJECTIONS, EXPANDING };
+enum winner { NOTHING, INCREMENTAL, POLYTOPES, NEWTON, BFGS, PROJECTIONS, EXPANDING };
 
 static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
 
@@ -51,6 +52,12 @@ static pls_vec3 core_support(const void *self, pls_vec3 n)
     return pls_posed_world(p, p->shape->ops->support(p->shape, pls_posed_turn_back(p, n)));
 }
 
+static double core_sdf(const void *self, pls_vec3 X)
+{
+    const pls_posed *p = self;
+    return pls_posed_sdf(p, X) + p->shape->margin * p->scale;
+}
+
 static pls_vec3 support_from_sdf(const void *self, pls_vec3 n) { return pls_posed_support(self, pls_unit(n)); }
 
 static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
@@ -59,6 +66,7 @@ static pls_convex convex_of(const pls_posed *p)
 {
     const bool alone = !p->shape->ops->support;
     return (pls_convex){.support = alone ? support_from_sdf : core_support,
+                        .sdf = alone ? NULL : core_sdf,
                         .self = p,
                         .centre = centre_of(p),
                         .axis = {p->x, p->y, p->z},
@@ -177,6 +185,27 @@ static pls_depth expand(const query *q)
     else
         forget(q);
     return d;
+}
+
+static pls_depth incremental(const query *q);
+
+static pls_depth polytopes(const query *q)
+{
+    pls_depth d;
+    const enum winner last = last_winner(q);
+    if (q->a->shape->dimension == 3)
+    {
+        if (last != POLYTOPES) forget(q);
+        if (pls_polytope_depth(q->a, q->b, q->state + OWN, &d))
+        {
+            q->state[WINNER] = POLYTOPES;
+            count(q, d.iterations, &d);
+            return d;
+        }
+        ++q->counts->fallbacks;
+        forget(q);
+    }
+    return incremental(q);
 }
 
 static pls_depth incremental(const query *q)
@@ -371,7 +400,7 @@ static solver *const table[KINDS][KINDS] = {
 //   B:           BALL       POLYTOPE     SMOOTH       SUPPORT      SDF        CONCAVE    HALF_SPACE
 /* A */
 [BALL]       = {ball_ball, ball_any,    ball_any,    ball_any,    ball_any,  ball_any,  on_plane},
-[POLYTOPE]   = {any_ball,  incremental, incremental, incremental, from_sdfs, from_grid, on_plane},
+[POLYTOPE]   = {any_ball,  polytopes,   incremental, incremental, from_sdfs, from_grid, on_plane},
 [SMOOTH]     = {any_ball,  incremental, newton,      incremental, from_sdfs, from_grid, on_plane},
 [SUPPORT]    = {any_ball,  incremental, incremental, incremental, from_sdfs, from_grid, on_plane},
 [SDF]        = {any_ball,  from_sdfs,   from_sdfs,   from_sdfs,   from_sdfs, from_grid, on_plane},
