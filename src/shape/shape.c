@@ -51,7 +51,8 @@ pls_vec3 pls_shape_nearest(const pls_shape *shape, pls_vec3 X)
 static pls_vec3 support_from_sdf(const pls_shape *shape, pls_vec3 n)
 {
     double t = far_away * shape->size;
-    pls_vec3 p = pls_vec(0.0, 0.0, 0.0);
+    // Not from the origin: seen from an axis of symmetry, as that of a ring, many points are nearest, and differences of phi point at none of them.
+    pls_vec3 p = pls_scale(pls_vec(0.13, 0.07, shape->dimension == 3 ? 0.11 : 0.0), shape->size);
     for (int k = 0; k < SUPPORT_TURNS; ++k)
     {
         pls_vec3 next = pls_shape_nearest(shape, pls_add(p, pls_scale(n, t)));

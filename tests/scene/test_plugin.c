@@ -91,12 +91,11 @@ static void plugins_that_are_no_good_are_refused_with_the_reason(void **state)
     assert_refused(PLUGIN_START PLUGIN_API "static const pls_law_ops law = {.api_version = 7, .name = \"old\"};\n"
                                            "pls_status particls_plugin(pls_plugin_host *host) { return host->add_law(host, &law); }\n",
                    "the contact law 'old' is made for version 7");
-    assert_refused(
-        PLUGIN_START PLUGIN_API
-        "static double sdf(const pls_shape *s, pls_vec3 X) { (void)s; return X.x; }\n"
-        "static const pls_shape_ops shape = {.api_version = PLS_API_VERSION, .name = \"sphere\", .sdf = sdf, .unbounded = true};\n"
-        "pls_status particls_plugin(pls_plugin_host *host) { return host->add_shape(host, &shape); }\n",
-        "already registered");
+    assert_refused(PLUGIN_START PLUGIN_API "static double sdf(const pls_shape *s, pls_vec3 X) { (void)s; return X.x; }\n"
+                                           "static const pls_shape_ops shape = {.api_version = PLS_API_VERSION, .name = \"sphere\", .sdf = "
+                                           "sdf, .in_3d = true, .unbounded = true};\n"
+                                           "pls_status particls_plugin(pls_plugin_host *host) { return host->add_shape(host, &shape); }\n",
+                   "already registered");
     assert_refused(PLUGIN_START PLUGIN_API
                    "extern int not_there(void);\n"
                    "pls_status particls_plugin(pls_plugin_host *host) { (void)host; return not_there() ? PLS_OK : PLS_USER; }\n",

@@ -106,6 +106,9 @@ static void a_torus(void **state)
     expect_near(shape->moments.z, volume * (1.0 + 0.75 * 0.0625), shape->mass.error);
     expect_near(shape->moments.x, volume * (0.5 + 0.625 * 0.0625), shape->mass.error);
     expect_near(shape->radius, 1.25, 1e-6);
+    // From its axis the whole ring is equally near, and differences of phi lead to none of it: the flat sides are found all the same.
+    assert_true(pls_length(pls_sub(shape->upper, pls_vec(1.25, 1.25, 0.25))) < 1e-6);
+    assert_true(pls_length(pls_sub(shape->lower, pls_vec(-1.25, -1.25, -0.25))) < 1e-6);
     pls_shape_free(shape);
 }
 
