@@ -173,8 +173,14 @@ static const pls_shape_ops my_shape = {
 // 3.1 What the user may say: `{my_force: {stiffness: 20, centre: [0, 0, 1]}}`. A row with three components is a vector. In a scene a number may be an expression
 //     over t and states ("20*(1 + sin(t))"). The key `bodies` beside them, which picks the bodies, is the program's.
 static const pls_parameter force_parameters[] = {
-    {.name = "stiffness", .unit = "N/m", .meaning = "k", .initial = PLS_REQUIRED, .minimum = 0.0, .maximum = INFINITY},
-    {.name = "centre", .unit = "m", .meaning = "c", .initial = 0.0, .minimum = -INFINITY, .maximum = INFINITY, .components = 3},
+    {.name = "stiffness", .unit = "N/m", .meaning = "k of the spring", .initial = PLS_REQUIRED, .minimum = 0.0, .maximum = INFINITY},
+    {.name = "centre",
+     .unit = "m",
+     .meaning = "c, where the spring is fixed",
+     .initial = 0.0,
+     .minimum = -INFINITY,
+     .maximum = INFINITY,
+     .components = 3},
     {.name = NULL},
 };
 enum { K, CX, CY, CZ }; // 3.2 places in the array of values; the constants are the same as long as there is no `prepare`

@@ -335,7 +335,7 @@ static pls_status build_force_of_plugin(const pls_builder *b, const pls_node *en
     def.values = values;
     def.group = group_of(b, map);
     PLS_TRY(pls_build_initial_values(b, def.ops->parameters, map, values));
-    PLS_TRY(pls_world_add_force(b->world, &def, &id));
+    PLS_TRY(pls_node_context(pls_world_add_force(b->world, &def, &id), map, "'%s'", def.ops->name));
     return pls_build_each_formula(b, def.ops->parameters, map, bind_force, &id);
 }
 
@@ -345,14 +345,12 @@ pls_status pls_build_forces(const pls_builder *b)
     for (size_t k = 0; list && k < list->count; ++k)
     {
         const pls_node *entry = list->child[k], *field = pls_node_get(entry, "field");
-        pls_status status;
         if (field)
-            status = build_field(b, field);
+            PLS_TRY(pls_node_context(build_field(b, field), entry, "forces[%zu]", k));
         else if (pls_node_get(entry, "gravity"))
-            status = pls_world_add_gravity(b->world, pls_scene_vector(entry, "gravity"));
+            PLS_TRY(pls_node_context(pls_world_add_gravity(b->world, pls_scene_vector(entry, "gravity")), entry, "forces[%zu]", k));
         else
-            status = build_force_of_plugin(b, entry);
-        PLS_TRY(pls_node_context(status, entry, "forces[%zu]", k));
+            PLS_TRY(build_force_of_plugin(b, entry)); // says itself where, as precisely as its numbers stand
     }
     return PLS_OK;
 }
