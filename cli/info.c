@@ -81,6 +81,15 @@ static int describe_series(const char *path)
     return CLI_DONE;
 }
 
+static int describe_plugin(const char *path)
+{
+    char *text;
+    if (pls_plugin_reference(path, &text) != PLS_OK) return cli_failed(CLI_FAILED);
+    bool written = fputs(text, stdout) >= 0 && fflush(stdout) == 0;
+    pls_scene_free_text(text);
+    return written ? CLI_DONE : CLI_FAILED;
+}
+
 static void copy_line(char line[INFO_LINE_SIZE], const char *start)
 {
     size_t length = strcspn(start, "\n");
@@ -131,12 +140,13 @@ static int describe_path(const char *path)
     if (is_checkpoint(path) || info_has_suffix(path, ".h5")) return info_describe_checkpoint(path);
     if (info_has_suffix(path, ".vtp")) return describe_frame(path);
     if (info_has_suffix(path, ".csv")) return describe_series(path);
+    if (info_has_suffix(path, ".so")) return describe_plugin(path);
     if (info_has_suffix(path, ".yaml") || info_has_suffix(path, ".yml"))
     {
         fprintf(stderr, "particls: \"%s\" looks like a scene: particls check %s tells about it\n", path, path);
         return CLI_USAGE;
     }
-    fprintf(stderr, "particls: \"%s\" is no run directory, checkpoint (.h5), frame (.vtp) or series (.csv)\n", path);
+    fprintf(stderr, "particls: \"%s\" is no run directory, checkpoint (.h5), frame (.vtp), series (.csv) or plugin (.so)\n", path);
     return CLI_USAGE;
 }
 
@@ -156,10 +166,11 @@ static int run(int argc, char **argv)
 const cli_verb cli_info = {
     .name = "info",
     .arguments = "FILE|DIR",
-    .summary = "say what a run directory, checkpoint, frame or series holds",
+    .summary = "say what a run directory, checkpoint, frame, series or plugin holds",
     .about = "Tells about a run directory (how far it is, its series, frames and checkpoints), a checkpoint (.h5: its fields with "
              "smallest, largest\n"
-             "and mean value, and whether it is undamaged), a frame (.vtp) or a series (.csv).",
+             "and mean value, and whether it is undamaged), a frame (.vtp), a series (.csv) or a plugin (.so: the laws, shapes,\n"
+             "forces and observers it brings, with their parameters).",
     .example = "  particls info scene.run",
     .options = options,
     .function = run,

@@ -1,4 +1,4 @@
-// plugin.c -- particls plugin: how to compile one's own law or shape.
+// plugin.c -- particls plugin: how to compile one's own law, shape, force or observer.
 
 #include "cli.h"
 
@@ -49,7 +49,7 @@ static int print_cflags(void)
         return CLI_FAILED;
     }
     // -ffp-contract=off and the like: without them results depend on the machine
-    printf("-shared -fPIC -std=gnu17 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -I%s\n", folder);
+    printf("%s -I%s\n", PLS_PLUGIN_FLAGS, folder);
     return CLI_DONE;
 }
 
@@ -72,8 +72,9 @@ const cli_verb cli_plugin = {
     .name = "plugin",
     .arguments = "",
     .summary = "print how to compile a plugin",
-    .about = "A plugin is a shared object with one's own contact laws or shapes, named in a scene by `plugins: [./my_law.so]`.",
-    .example = "  cc $(particls plugin --cflags) my_law.c -o my_law.so",
+    .about = "A plugin is a shared object with one's own contact laws, shapes, forces and observers, named in a scene by\n"
+             "`plugins: [./my_plugin.so]`. `particls info my_plugin.so` says what it holds.",
+    .example = "  cc $(particls plugin --cflags) my_plugin.c -o my_plugin.so",
     .options = options,
     .function = run,
 };

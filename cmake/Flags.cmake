@@ -15,6 +15,9 @@ if(PARTICLS_SANITIZE)
     target_link_options(particls_flags INTERFACE -fsanitize=${PARTICLS_SANITIZE})
 endif()
 
+# How a user compiles a plugin, as `particls plugin --cflags` and pkg-config print it.
+set(PARTICLS_PLUGIN_FLAGS "-shared -fPIC -std=gnu17 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math")
+
 # Instruction sets. Files named *_simd.c are compiled once for each of PARTICLS_ISAS, with PLS_ISA=<name> defined, and the library
 # picks one at run time; all else is compiled for the baseline.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|amd64|AMD64)$")

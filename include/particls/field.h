@@ -61,6 +61,9 @@ typedef struct pls_field_view
     int components;
 } pls_field_view;
 
+/// Component `component` of row `row`, of whatever type.
+double pls_field_value(const pls_field_view *view, size_t row, int component);
+
 /// View of a body field, rows in memory order (see `pls_world_body_rows` for the order of ids). Valid until the next step or change of the world.
 pls_status pls_world_body_field(const struct pls_world *world, const char *name, pls_field_view *view);
 

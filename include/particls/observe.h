@@ -63,7 +63,7 @@ typedef struct pls_collection
 
 pls_collection_def pls_default_collection_def(void);
 /// Measure now. Sums are in order of ids: the same bits for any number of threads.
-pls_status pls_measure_collection(pls_world *world, const pls_collection_def *def, pls_collection *out);
+pls_status pls_measure_collection(const pls_world *world, const pls_collection_def *def, pls_collection *out);
 
 /// A tracked body or group: columns for each named quantity (any body field of the field table: "position", "velocity", "orientation",
 /// "angular_velocity", "force", "torque", "scale", ...) of each body.
@@ -79,7 +79,8 @@ typedef enum pls_observer_kind {
     PLS_OBSERVE_COLLECTION,
     PLS_OBSERVE_FRAMES,
     PLS_OBSERVE_CHECKPOINT,
-    PLS_OBSERVE_USER
+    PLS_OBSERVE_USER, ///< a function that is called and may do what it likes but change the world
+    PLS_OBSERVE_OWN   ///< a series of one's own: `pls_observer_ops`
 } pls_observer_kind;
 
 /// Fields written to frames: the default set of the field table plus `fields`; contacts as lines if `contacts`.
@@ -90,6 +91,54 @@ typedef struct pls_frames_def
     char fields[16][PLS_NAME_SIZE];
 } pls_frames_def;
 
+/// Most numbers an observer of one's own may keep from look to look.
+#define PLS_OBSERVER_MAX_MEMORY 64
+
+/// What an observer of one's own is shown: the world after a step, by all functions that take a `const pls_world *`.
+typedef struct pls_observer_view
+{
+    const pls_world *world;
+    const double *constants; ///< what `prepare` made of the parameters
+    pls_group_id group;      ///< the bodies to look at; null: all (see pls_world_next_body)
+    int dimension;
+} pls_observer_view;
+
+/// A column of its series.
+typedef struct pls_observer_column
+{
+    const char *name;    ///< "temperature"; letters, digits, '_', '.' and '-'
+    const char *unit;    ///< "m^2/s^2"; "" for pure numbers
+    const char *meaning; ///< one line for the docs
+    bool only_3d;        ///< left out of series in 2D; `look` fills it all the same
+} pls_observer_column;
+
+/// Operations of an observer with a series of its own. They keep nothing: what must be remembered from look to look lies in `memory`, which the run keeps and
+/// checkpoints, so that a run that is resumed writes the same rows.
+typedef struct pls_observer_ops
+{
+    uint32_t api_version;               ///< PLS_API_VERSION
+    const char *name;                   ///< the scene key
+    const char *meaning;                ///< one line for the docs
+    const pls_parameter *parameters;    ///< numbers and vectors; null: none
+    const pls_observer_column *columns; ///< ends with a null name
+    int memory;                         ///< numbers kept from look to look, all zero before the first
+    /// Check what the table cannot and turn parameters into constants, at most PLS_MAX_VALUES. Null: the constants are the parameters.
+    pls_status (*prepare)(const double *values, int dimension, double *constants);
+    /// Take note of the world in `memory`; called once at each look that is due. Null without memory.
+    pls_status (*update)(const pls_observer_view *view, double *memory);
+    /// Fill `row`, a value per column. Called after `update`, and once more for summary.json at the end: it must depend on `view` and `memory` alone.
+    pls_status (*look)(const pls_observer_view *view, const double *memory, double *row);
+} pls_observer_ops;
+
+/// An observer of one's own with its numbers.
+typedef struct pls_own_def
+{
+    const pls_observer_ops *ops; ///< must outlive the run
+    char group[PLS_NAME_SIZE];   ///< only bodies of this group; "" or "all": all
+    bool given;                  ///< `values` are given; else all defaults
+    double values[PLS_MAX_VALUES];
+} pls_own_def;
+
 /// One observer of a run.
 typedef struct pls_observer_def
 {
@@ -99,6 +148,7 @@ typedef struct pls_observer_def
     pls_particle_def particle;
     pls_collection_def collection;
     pls_frames_def frames;
+    pls_own_def own;
     /// PLS_OBSERVE_USER: called with the world after the step. Must not change the world. A failure stops the run.
     pls_status (*function)(void *context, pls_world *world);
     void *context;

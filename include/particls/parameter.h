@@ -1,5 +1,5 @@
 /// @file parameter.h
-/// Named numbers of shapes, laws and forces, described once: the scene reader, its checks, the docs and the program all use the description.
+/// Named numbers of shapes, laws, forces and observers, described once: the scene reader, its checks, the docs and the program all use the description.
 #ifndef PARTICLS_PARAMETER_H
 #define PARTICLS_PARAMETER_H
 
@@ -10,8 +10,10 @@
 extern "C" {
 #endif
 
-/// Most parameters a shape, law or force may have.
+/// Most parameters a shape, law, force or observer may have.
 #define PLS_MAX_PARAMETERS 32
+/// Most numbers they make: all of them vectors.
+#define PLS_MAX_VALUES (3 * PLS_MAX_PARAMETERS)
 
 /// `initial` for a parameter that must be given.
 #define PLS_REQUIRED NAN
@@ -47,7 +49,7 @@ int pls_parameter_values(const pls_parameter *table);
 /// Check `values` against the table; `owner` ("contact law 'hertz'") starts the message. INVALID_ARGUMENT names the parameter, the value and the range.
 pls_status pls_parameters_check(const pls_parameter *table, const double *values, const char *owner);
 
-/// Place of `name` in the array of values, -1 when there is none or when it is no number.
+/// Place of `name` in the array of values, -1 when there is none or when it is no number. "wind[1]" is the second component of a vector.
 int pls_parameter_find(const pls_parameter *table, const char *name);
 
 /// Fill `values` with the defaults (NaN where required).

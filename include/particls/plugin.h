@@ -1,5 +1,5 @@
 /// @file plugin.h
-/// The door for a user's shared object. It exports one function:
+/// The door for a user's shared object: contact laws, shapes, body forces and observers. It exports one function:
 ///
 ///     pls_status particls_plugin(pls_plugin_host *host) { return host->add_law(host, &my_law_ops); }
 ///     const uint32_t particls_plugin_api = PLS_API_VERSION;
@@ -8,6 +8,7 @@
 
 #include <particls/force.h>
 #include <particls/law.h>
+#include <particls/observe.h>
 #include <particls/shape.h>
 
 #ifdef __cplusplus
@@ -20,6 +21,8 @@ struct pls_plugin_host
     uint32_t api_version; ///< of the running library
     pls_status (*add_law)(pls_plugin_host *host, const pls_law_ops *ops);
     pls_status (*add_shape)(pls_plugin_host *host, const pls_shape_ops *ops);
+    pls_status (*add_force)(pls_plugin_host *host, const pls_force_ops *ops);
+    pls_status (*add_observer)(pls_plugin_host *host, const pls_observer_ops *ops);
 };
 
 typedef pls_status pls_plugin_function(pls_plugin_host *host);

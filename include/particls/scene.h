@@ -38,6 +38,8 @@ pls_status pls_scene_used_text(const pls_scene *scene, char **text);
 pls_status pls_scene_json_schema(char **text);
 /// The reference page docs/scene.md.
 pls_status pls_scene_reference(char **text);
+/// What a plugin brings, with tables of parameters and columns, as Markdown. SCENE says why it cannot be used.
+pls_status pls_plugin_reference(const char *path, char **text);
 void pls_scene_free_text(char *text);
 
 #ifdef __cplusplus

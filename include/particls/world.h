@@ -121,8 +121,10 @@ pls_status pls_world_reserve_bodies(pls_world *world, size_t count);
 pls_status pls_world_add_body(pls_world *world, const pls_body_def *def, pls_body_id *id);
 /// Take a body out. Its number may be used again with a new generation. STALE_ID if it is gone already.
 pls_status pls_world_remove_body(pls_world *world, pls_body_id id);
-/// The world owns `context` from here on (ops->destroy), also when this fails.
-pls_status pls_world_add_force(pls_world *world, const pls_force_ops *ops, void *context);
+/// A body force. The world owns `def->context` from here on (ops->destroy), also when this fails.
+pls_status pls_world_add_force(pls_world *world, const pls_force_def *def, pls_force_id *id);
+/// Change one parameter of a force.
+pls_status pls_world_set_force_parameter(pls_world *world, pls_force_id force, const char *name, double value);
 /// Uniform gravity [m/s^2].
 pls_status pls_world_add_gravity(pls_world *world, pls_vec3 gravity);
 /// The world owns `def->context` from here on, also when this fails.
@@ -131,6 +133,9 @@ pls_status pls_world_add_state(pls_world *world, const pls_state_def *def, pls_s
 typedef pls_status pls_parameter_function(void *context, double time, const double *states, double *value);
 pls_status pls_world_bind_law_parameter(pls_world *world, pls_material_id a, pls_material_id b, const char *name,
                                         pls_parameter_function *function, void *context, void (*destroy)(void *));
+/// The same for a parameter of a force.
+pls_status pls_world_bind_force_parameter(pls_world *world, pls_force_id force, const char *name, pls_parameter_function *function,
+                                          void *context, void (*destroy)(void *));
 /// The same for a material's value.
 pls_status pls_world_bind_material_value(pls_world *world, pls_material_id material, const char *name, pls_parameter_function *function,
                                          void *context, void (*destroy)(void *));
@@ -181,6 +186,9 @@ typedef struct pls_body_motion
 } pls_body_motion;
 /// STALE_ID if it is gone.
 pls_status pls_body_get(const pls_world *world, pls_body_id id, pls_body_motion *motion);
+/// The bodies of a group (null: all) one after the other in order of their numbers: begin with a null id; behind the last comes a null id.
+///     for (id = pls_world_next_body(w, g, (pls_body_id){0}); id.index1; id = pls_world_next_body(w, g, id)) ...
+pls_body_id pls_world_next_body(const pls_world *world, pls_group_id group, pls_body_id previous);
 /// INVALID_ARGUMENT for what is not finite, and in 2D for velocities out of the x-y plane or rotations not about z.
 pls_status pls_body_set_velocity(pls_world *world, pls_body_id id, pls_vec3 velocity, pls_vec3 angular_velocity);
 pls_status pls_state_get(const pls_world *world, pls_state_id id, double *values);
@@ -204,7 +212,7 @@ typedef struct pls_world_figures
     double energy_damped, energy_slid;   ///< dissipated since the start by dashpots and by sliding [J]
     pls_vec3 momentum, angular_momentum; ///< of bodies with mass, angular about the origin [kg m/s], [kg m^2/s]
 } pls_world_figures;
-pls_status pls_world_get_figures(pls_world *world, pls_world_figures *figures);
+pls_status pls_world_get_figures(const pls_world *world, pls_world_figures *figures);
 /// @}
 
 /// Built-in operations by name; null when there is none. Lists end with null.

@@ -21,12 +21,24 @@ int pls_parameter_values(const pls_parameter *table)
     return values;
 }
 
+/// The component of `row` that `name` names: "wind" is the first of a vector, "wind[1]" the second; -1 when it names something else.
+static int named_component(const pls_parameter *row, const char *name)
+{
+    size_t size = strlen(row->name);
+    if (row->kind != PLS_PARAMETER_NUMBER || strncmp(row->name, name, size) != 0) return -1;
+    if (name[size] == '\0') return 0;
+    bool indexed = name[size] == '[' && name[size + 1] >= '0' && name[size + 1] <= '2' && strcmp(name + size + 2, "]") == 0;
+    int component = indexed ? name[size + 1] - '0' : -1;
+    return row_components(row) > 1 ? component : -1;
+}
+
 int pls_parameter_find(const pls_parameter *table, const char *name)
 {
     int place = 0;
     for (const pls_parameter *row = table; row && row->name && name; ++row)
     {
-        if (strcmp(row->name, name) == 0) return row->kind == PLS_PARAMETER_NUMBER ? place : -1;
+        int component = named_component(row, name);
+        if (component >= 0) return place + component;
         place += row_components(row);
     }
     return -1;

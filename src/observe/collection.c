@@ -68,7 +68,7 @@ static void report_bodies(const pls_body_sums *sums, unsigned quantities, pls_co
     if (quantities & PLS_MEASURE_POROSITY) out->porosity = out->volume > 0 ? 1 - sums->solid / out->volume : 0;
 }
 
-static pls_status measure_contacts(pls_world *world, const pls_selection *selection, unsigned quantities, pls_contact_sums *sums)
+static pls_status measure_contacts(const pls_world *world, const pls_selection *selection, unsigned quantities, pls_contact_sums *sums)
 {
     const unsigned of_contacts =
         PLS_MEASURE_STRESS | PLS_MEASURE_TANGENT | PLS_MEASURE_FABRIC | PLS_MEASURE_COORDINATION | PLS_MEASURE_ENERGY;
@@ -81,7 +81,7 @@ static pls_status measure_contacts(pls_world *world, const pls_selection *select
     return status;
 }
 
-pls_status pls_measure_collection(pls_world *world, const pls_collection_def *def, pls_collection *out)
+pls_status pls_measure_collection(const pls_world *world, const pls_collection_def *def, pls_collection *out)
 {
     pls_selection selection;
     pls_contact_sums contacts;

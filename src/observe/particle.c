@@ -26,20 +26,6 @@ typedef struct particle_series
     size_t body_count;
 } particle_series;
 
-static double component(const pls_field_view *view, size_t row, int c)
-{
-    const char *value = (const char *)view->data + row * view->stride;
-    switch (view->type)
-    {
-        case PLS_F64: return ((const double *)value)[c];
-        case PLS_F32: return (double)((const float *)value)[c];
-        case PLS_U32: return (double)((const uint32_t *)value)[c];
-        case PLS_U16: return (double)((const uint16_t *)value)[c];
-        case PLS_U8: return (double)((const uint8_t *)value)[c];
-    }
-    return NAN;
-}
-
 static pls_status particle_values(void *context, pls_world *world, double *values)
 {
     const particle_series *series = context;
@@ -54,10 +40,10 @@ static pls_status particle_values(void *context, pls_world *world, double *value
     {
         const tracked_body *body = &series->body[b];
         uint32_t row = body->number < numbers ? row_of[body->number] : UINT32_MAX;
-        bool there = row != UINT32_MAX && component(&generation, row, 0) == (double)body->generation;
+        bool there = row != UINT32_MAX && pls_field_value(&generation, row, 0) == (double)body->generation;
         for (size_t q = 0; q < series->quantity_count; ++q)
         {
-            for (int c = 0; c < view[q].components; ++c) *values++ = there ? component(&view[q], row, c) : NAN;
+            for (int c = 0; c < view[q].components; ++c) *values++ = there ? pls_field_value(&view[q], row, c) : NAN;
         }
     }
     return PLS_OK;
@@ -98,8 +84,8 @@ static pls_status find_bodies(pls_world *world, const char *name, particle_serie
     for (size_t number = 0; number < numbers; ++number)
     {
         uint32_t row = row_of[number];
-        if (row == UINT32_MAX || (group != 0 && component(&group_of, row, 0) != (double)group)) continue;
-        series->body[series->body_count++] = (tracked_body){(uint32_t)number, (uint32_t)component(&generation, row, 0)};
+        if (row == UINT32_MAX || (group != 0 && pls_field_value(&group_of, row, 0) != (double)group)) continue;
+        series->body[series->body_count++] = (tracked_body){(uint32_t)number, (uint32_t)pls_field_value(&generation, row, 0)};
     }
     if (series->body_count == 0) return pls_fail(PLS_NOT_FOUND, "the group '%s' has no bodies to track", name);
     return PLS_OK;

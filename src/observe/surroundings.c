@@ -30,14 +30,5 @@ pls_solid pls_surroundings_solid(const pls_surroundings *around, uint32_t row)
 
 double pls_surroundings_potential(const pls_surroundings *around, uint32_t row)
 {
-    const pls_world *world = around->world;
-    const pls_body_place *place = &around->bodies->place[row];
-    const pls_vec3 position = pls_vec(place->x, place->y, place->z);
-    double energy = 0;
-    for (size_t k = 0; k < world->force_count; ++k)
-    {
-        const pls_force_instance *force = &world->force[k];
-        if (force->ops->potential) energy += force->ops->potential(force->context, world->time, position, around->bodies->mass[row].mass);
-    }
-    return energy;
+    return pls_force_potential(around->world, around->bodies, row);
 }

@@ -2,6 +2,9 @@
 //
 // The text of a run, kept in its checkpoints, has a line per fact:
 //     series 1234 stress       the file series/stress.csv has 1234 bytes
+//     memory 2 mine            what the observer "mine" remembers, as the bits of the two numbers that follow
+//     number 3ff0000000000000
+//     number 0000000000000000
 //     frames 2 pack            two frames of "pack" are written, at the times of the two lines that follow
 //     frame 0
 //     frame 0.05
@@ -23,7 +26,8 @@ static const char contacts_suffix[] = ".contacts";
 
 bool pls_recorder_has_series(const pls_recorder_output *output)
 {
-    return output->def->kind == PLS_OBSERVE_PARTICLE || output->def->kind == PLS_OBSERVE_COLLECTION;
+    pls_observer_kind kind = output->def->kind;
+    return kind == PLS_OBSERVE_PARTICLE || kind == PLS_OBSERVE_COLLECTION || kind == PLS_OBSERVE_OWN;
 }
 
 static bool has_frames(const pls_recorder_output *output) { return output->def->kind == PLS_OBSERVE_FRAMES; }
@@ -60,6 +64,8 @@ static pls_status make_series(pls_recorder_output *output, pls_world *world)
 {
     if (output->def->kind == PLS_OBSERVE_PARTICLE)
         PLS_TRY(pls_series_particle(world, &output->def->particle, &output->series));
+    else if (output->def->kind == PLS_OBSERVE_OWN)
+        PLS_TRY(pls_series_own(world, &output->def->own, &output->series));
     else
         PLS_TRY(pls_series_collection(world, &output->def->collection, &output->series));
     return pls_allocate(&output->values, output->series.column_count + 1, sizeof(double), "a row of a series");
@@ -174,6 +180,7 @@ static pls_status write_frame(pls_recorder *recorder, pls_recorder_output *outpu
 
 static pls_status write_row(pls_recorder_output *output, pls_world *world)
 {
+    if (output->series.update) PLS_TRY(output->series.update(output->series.context, world));
     output->values[0] = pls_world_time(world);
     PLS_TRY(output->series.values(output->series.context, world, output->values + 1));
     return pls_csv_row(&output->csv, output->values, output->series.column_count + 1);
@@ -184,7 +191,8 @@ static pls_status look(pls_recorder *recorder, pls_recorder_output *output, pls_
     switch (output->def->kind)
     {
         case PLS_OBSERVE_PARTICLE:
-        case PLS_OBSERVE_COLLECTION: return write_row(output, world);
+        case PLS_OBSERVE_COLLECTION:
+        case PLS_OBSERVE_OWN: return write_row(output, world);
         case PLS_OBSERVE_FRAMES: return write_frame(recorder, output, world);
         case PLS_OBSERVE_USER: return output->def->function(output->def->context, world);
         case PLS_OBSERVE_CHECKPOINT: break; // the run itself writes checkpoints, after all others have looked
@@ -215,6 +223,20 @@ pls_status pls_recorder_look(pls_recorder *recorder, pls_world *world)
 
 // ---- noting and going on -------------------------------------------------------------------------------------------
 
+static pls_status describe_memory(const pls_recorder_output *output, pls_text *run)
+{
+    const pls_series *series = &output->series;
+    if (series->memory_count == 0) return PLS_OK;
+    PLS_TRY(pls_text_print(run, "memory %zu %s\n", series->memory_count, output->def->name));
+    for (size_t k = 0; k < series->memory_count; ++k)
+    {
+        uint64_t bits; // exact, also for what is not a number
+        memcpy(&bits, &series->memory[k], sizeof bits);
+        PLS_TRY(pls_text_print(run, "number %016" PRIx64 "\n", bits));
+    }
+    return PLS_OK;
+}
+
 pls_status pls_recorder_describe(pls_recorder *recorder, pls_text *run)
 {
     for (size_t k = 0; k < recorder->count; ++k)
@@ -224,6 +246,7 @@ pls_status pls_recorder_describe(pls_recorder *recorder, pls_text *run)
         {
             PLS_TRY(pls_csv_sync(&output->csv));
             PLS_TRY(pls_text_print(run, "series %" PRIu64 " %s\n", output->csv.size, output->def->name));
+            PLS_TRY(describe_memory(output, run));
         }
         if (!has_frames(output)) continue;
         PLS_TRY(pls_text_print(run, "frames %zu %s\n", output->frames, output->def->name));
@@ -323,6 +346,27 @@ static pls_status resume_frames(pls_recorder *recorder, pls_recorder_output *out
     return output->def->frames.contacts ? write_collection(recorder, output, contacts_suffix) : PLS_OK;
 }
 
+static pls_status resume_memory(pls_recorder_output *output, const char *run)
+{
+    pls_series *series = &output->series;
+    if (series->memory_count == 0) return PLS_OK;
+    uint64_t count = 0;
+    PLS_TRY(find_entry(&run, "memory", output->def->name, &count));
+    for (size_t k = 0; k < series->memory_count; ++k)
+    {
+        const char *entry = count == series->memory_count ? pls_run_text_find(&run, "number") : NULL;
+        char *end = NULL;
+        uint64_t bits = entry ? strtoull(entry, &end, 16) : 0;
+        if (!entry || *end != '\n')
+            return pls_fail(PLS_INVALID_ARGUMENT,
+                            "the observer '%s' remembers %zu numbers, but %" PRIu64
+                            " when the run was started: resume it with the plugin it had",
+                            output->def->name, series->memory_count, count);
+        memcpy(&series->memory[k], &bits, sizeof bits);
+    }
+    return PLS_OK;
+}
+
 pls_status pls_recorder_resume(pls_recorder *recorder, const char *run)
 {
     PLS_TRY(check_count(recorder, run));
@@ -335,6 +379,7 @@ pls_status pls_recorder_resume(pls_recorder *recorder, const char *run)
             uint64_t size = 0;
             PLS_TRY(find_entry(&line, "series", output->def->name, &size));
             PLS_TRY(open_series(recorder, output, size));
+            PLS_TRY(resume_memory(output, run));
         }
         if (has_frames(output)) PLS_TRY(resume_frames(recorder, output, run));
     }

@@ -10,7 +10,7 @@
 typedef struct pls_recorder_output
 {
     const pls_observer_def *def;
-    pls_series series; ///< of a particle or collection observer
+    pls_series series; ///< of an observer that has one
     double *values;    ///< room for a row: time, then the columns of `series`
     pls_csv csv;
     double *times; ///< of each frame written [s]

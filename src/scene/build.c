@@ -104,17 +104,8 @@ static pls_status set_narrow_options(pls_builder *b, const pls_scene_contact *co
 
 static pls_status set_law(pls_builder *b, const pls_scene_contact *contact, size_t i, size_t j)
 {
-    double values[3 * PLS_MAX_PARAMETERS];
-    pls_scene_parameters(contact->ops->parameters, contact->node, values);
-    size_t place = 0;
-    for (const pls_parameter *row = contact->ops->parameters; row && row->name; ++row)
-    {
-        char text[32];
-        pls_key key = pls_schema_parameter(row, 0, text);
-        const pls_node *node = pls_node_get(contact->node, row->name);
-        if (node->kind == PLS_NODE_SCALAR && node->formula) PLS_TRY(pls_build_initial_value(b, &key, node, &values[place]));
-        place += row->components == 3 ? 3 : 1;
-    }
+    double values[PLS_MAX_VALUES];
+    PLS_TRY(pls_build_initial_values(b, contact->ops->parameters, contact->node, values));
     pls_status status = pls_world_set_law(b->world, b->materials[i], b->materials[j], contact->ops, values);
     bool at_surface = strcmp(pls_node_get(contact->node, "lever")->text, "surface") == 0;
     if (status == PLS_OK) status = pls_world_set_lever_at_surface(b->world, b->materials[i], b->materials[j], at_surface);
@@ -122,16 +113,17 @@ static pls_status set_law(pls_builder *b, const pls_scene_contact *contact, size
     return pls_node_context(status, contact->node, "contact");
 }
 
+static pls_status bind_parameter(const pls_builder *b, const pls_key *key, const pls_node *node, size_t place, void *pair)
+{
+    (void)place;
+    const size_t *material = pair;
+    return pls_build_bind_law(b, b->materials[material[0]], b->materials[material[1]], key, node);
+}
+
 static pls_status bind_law(pls_builder *b, const pls_scene_contact *contact, size_t i, size_t j)
 {
-    for (const pls_parameter *row = contact->ops->parameters; row && row->name; ++row)
-    {
-        char text[32];
-        pls_key key = pls_schema_parameter(row, 0, text);
-        const pls_node *node = pls_node_get(contact->node, row->name);
-        if (node->kind == PLS_NODE_SCALAR && node->formula) PLS_TRY(pls_build_bind_law(b, b->materials[i], b->materials[j], &key, node));
-    }
-    return PLS_OK;
+    size_t pair[] = {i, j};
+    return pls_build_each_formula(b, contact->ops->parameters, contact->node, bind_parameter, pair);
 }
 
 static pls_status for_each_pair(pls_builder *b, pls_status (*action)(pls_builder *, const pls_scene_contact *, size_t, size_t))

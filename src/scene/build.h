@@ -34,6 +34,14 @@ pls_status pls_build_initial_value(const pls_builder *b, const pls_key *key, con
 /// Bind a formula over t and states to a material's value, or to the parameter of the law between two materials.
 pls_status pls_build_bind_material(const pls_builder *b, pls_material_id material, const pls_key *key, const pls_node *node);
 pls_status pls_build_bind_law(const pls_builder *b, pls_material_id i, pls_material_id j, const pls_key *key, const pls_node *node);
+pls_status pls_build_bind_force(const pls_builder *b, pls_force_id force, const pls_key *key, const pls_node *node);
+/// Do something for each number of a table of parameters that the scene gives by a formula. `key` is named as the parameter, "wind[1]" for the component of a
+/// vector, and `place` is its place among the values.
+typedef pls_status pls_build_action(const pls_builder *b, const pls_key *key, const pls_node *node, size_t place, void *context);
+pls_status pls_build_each_formula(const pls_builder *b, const pls_parameter *table, const pls_node *map, pls_build_action *action,
+                                  void *context);
+/// Values of a table of parameters at t = 0.
+pls_status pls_build_initial_values(const pls_builder *b, const pls_parameter *table, const pls_node *map, double *values);
 /// The motion of an entry's bodies over time. One formula serves all bodies of the entry, each body has its own context.
 pls_status pls_build_motion_formula(const pls_builder *b, const pls_node *motion, pls_formula **formula);
 pls_status pls_build_motion_context(const pls_builder *b, const pls_node *motion, pls_formula *formula, pls_motion_def *def);

@@ -106,6 +106,48 @@ pls_status pls_build_bind_law(const pls_builder *b, pls_material_id i, pls_mater
                             key->name);
 }
 
+pls_status pls_build_bind_force(const pls_builder *b, pls_force_id force, const pls_key *key, const pls_node *node)
+{
+    timely *f;
+    PLS_TRY(make_timely(b, key, node, &f));
+    return pls_node_context(pls_world_bind_force_parameter(b->world, force, key->name, timely_value, f, timely_destroy), node, "'%s'",
+                            key->name);
+}
+
+pls_status pls_build_each_formula(const pls_builder *b, const pls_parameter *table, const pls_node *map, pls_build_action *action,
+                                  void *context)
+{
+    size_t place = 0;
+    for (const pls_parameter *row = table; row && row->name; ++row)
+    {
+        if (row->kind != PLS_PARAMETER_NUMBER) continue;
+        const pls_node *node = pls_node_get(map, row->name);
+        bool vector = node->kind == PLS_NODE_LIST;
+        for (size_t c = 0; c < (vector ? node->count : 1); ++c, ++place)
+        {
+            const pls_node *number = vector ? node->child[c] : node;
+            if (!number->formula) continue;
+            char initial[32], name[PLS_NAME_SIZE + 8];
+            pls_key key = pls_schema_parameter(row, 0, initial);
+            snprintf(name, sizeof name, vector ? "%s[%zu]" : "%s", row->name, c);
+            key.name = name;
+            PLS_TRY(action(b, &key, number, place, context));
+        }
+    }
+    return PLS_OK;
+}
+
+static pls_status take_initial(const pls_builder *b, const pls_key *key, const pls_node *node, size_t place, void *values)
+{
+    return pls_build_initial_value(b, key, node, (double *)values + place);
+}
+
+pls_status pls_build_initial_values(const pls_builder *b, const pls_parameter *table, const pls_node *map, double *values)
+{
+    pls_scene_parameters(table, map, values);
+    return pls_build_each_formula(b, table, map, take_initial, values);
+}
+
 // ---------------------------------------------------------------------------------------------------------------------------------------
 // motion
 
@@ -184,14 +226,13 @@ typedef struct force_field
     pls_formula *force; ///< three components
     pls_formula *where; ///< null: everywhere
     bool acceleration;
-    uint32_t group; ///< index1 of the group, 0: all bodies
 } force_field;
 
 static pls_status add_field(const force_field *field, const pls_force_batch *batch, pls_formula_copy *force, pls_formula_copy *where)
 {
     for (size_t k = 0; k < batch->count; ++k)
     {
-        if (isinf(batch->mass[k]) || (field->group && batch->group[k] != field->group)) continue;
+        if (isinf(batch->mass[k])) continue;
         double at[] = {batch->time,  batch->x[k],  batch->y[k],      batch->z[k],   batch->vx[k],
                        batch->vy[k], batch->vz[k], batch->radius[k], batch->mass[k]};
         double inside = 1.0, f[3];
@@ -237,10 +278,9 @@ static const pls_force_ops field_ops = {
 
 static pls_status make_field(const pls_builder *b, const pls_node *node, force_field *field)
 {
-    const pls_node *force = pls_node_get(node, "force"), *where = pls_node_get(node, "where"), *group = pls_node_get(node, "bodies");
+    const pls_node *force = pls_node_get(node, "force"), *where = pls_node_get(node, "where");
     field->acceleration = force == NULL;
     if (!force) force = pls_node_get(node, "acceleration");
-    if (strcmp(group->text, "all") != 0) field->group = b->groups[pls_scene_find_body(b->scene, group->text)].index1;
     size_t count;
     unsigned uses = 0;
     const pls_key *keys = pls_schema_keys("field", &count);
@@ -254,25 +294,63 @@ static pls_status make_field(const pls_builder *b, const pls_node *node, force_f
     return where ? pls_formula_make(&where->text, 1, &symbols, &field->where) : PLS_OK;
 }
 
+/// The group a force acts on; null for all.
+static pls_group_id group_of(const pls_builder *b, const pls_node *map)
+{
+    const char *name = pls_node_get(map, "bodies")->text;
+    return strcmp(name, "all") == 0 ? (pls_group_id){0} : b->groups[pls_scene_find_body(b->scene, name)];
+}
+
+static pls_status build_field(const pls_builder *b, const pls_node *node)
+{
+    force_field *field;
+    PLS_TRY(pls_allocate(&field, 1, sizeof *field, "a field of forces"));
+    pls_status status = make_field(b, node, field);
+    if (status != PLS_OK)
+    {
+        field_destroy(field);
+        return status;
+    }
+    pls_force_def def = pls_default_force_def();
+    def.ops = &field_ops;
+    def.context = field;
+    def.group = group_of(b, node);
+    pls_force_id id;
+    return pls_world_add_force(b->world, &def, &id);
+}
+
+static pls_status bind_force(const pls_builder *b, const pls_key *key, const pls_node *node, size_t place, void *id)
+{
+    (void)place;
+    return pls_build_bind_force(b, *(const pls_force_id *)id, key, node);
+}
+
+static pls_status build_force_of_plugin(const pls_builder *b, const pls_node *entry)
+{
+    const pls_node *map;
+    double values[PLS_MAX_VALUES];
+    pls_force_id id;
+    pls_force_def def = pls_default_force_def();
+    def.ops = pls_scene_named_operations(&b->scene->force_ops, entry, &map);
+    def.values = values;
+    def.group = group_of(b, map);
+    PLS_TRY(pls_build_initial_values(b, def.ops->parameters, map, values));
+    PLS_TRY(pls_node_context(pls_world_add_force(b->world, &def, &id), map, "'%s'", def.ops->name));
+    return pls_build_each_formula(b, def.ops->parameters, map, bind_force, &id);
+}
+
 pls_status pls_build_forces(const pls_builder *b)
 {
     const pls_node *list = pls_node_get(b->scene->root, "forces");
     for (size_t k = 0; list && k < list->count; ++k)
     {
-        const pls_node *entry = list->child[k], *node = pls_node_get(entry, "field");
-        if (!node)
-        {
-            PLS_TRY(pls_node_context(pls_world_add_gravity(b->world, pls_scene_vector(entry, "gravity")), entry, "gravity"));
-            continue;
-        }
-        force_field *field;
-        PLS_TRY(pls_allocate(&field, 1, sizeof *field, "a field of forces"));
-        pls_status status = make_field(b, node, field);
-        if (status == PLS_OK)
-            status = pls_world_add_force(b->world, &field_ops, field);
+        const pls_node *entry = list->child[k], *field = pls_node_get(entry, "field");
+        if (field)
+            PLS_TRY(pls_node_context(build_field(b, field), entry, "forces[%zu]", k));
+        else if (pls_node_get(entry, "gravity"))
+            PLS_TRY(pls_node_context(pls_world_add_gravity(b->world, pls_scene_vector(entry, "gravity")), entry, "forces[%zu]", k));
         else
-            field_destroy(field);
-        PLS_TRY(pls_node_context(status, entry, "forces[%zu]", k));
+            PLS_TRY(build_force_of_plugin(b, entry)); // says itself where, as precisely as its numbers stand
     }
     return PLS_OK;
 }

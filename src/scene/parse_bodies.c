@@ -242,11 +242,16 @@ pls_status pls_scene_parse_forces(pls_scene *scene)
     const pls_node *list = pls_node_get(scene->root, "forces");
     for (size_t k = 0; list && k < list->count; ++k)
     {
-        const pls_node *field = pls_node_get(list->child[k], "field"), *group = pls_node_get(field, "bodies");
-        if (!field) continue;
-        PLS_TRY(exclude(field, "force", "acceleration"));
-        if (!pls_node_get(field, "force") && !pls_node_get(field, "acceleration"))
-            return pls_node_fail(field, "give one of them", "the field has neither 'force' nor 'acceleration'");
+        const pls_node *map = pls_node_get(list->child[k], "field");
+        if (map)
+        {
+            PLS_TRY(exclude(map, "force", "acceleration"));
+            if (!pls_node_get(map, "force") && !pls_node_get(map, "acceleration"))
+                return pls_node_fail(map, "give one of them", "the field has neither 'force' nor 'acceleration'");
+        }
+        else if (!pls_scene_named_operations(&scene->force_ops, list->child[k], &map))
+            continue;
+        const pls_node *group = pls_node_get(map, "bodies");
         int index;
         if (strcmp(group->text, "all") != 0) PLS_TRY(pls_scene_need_body(scene, group, &index));
     }

@@ -183,6 +183,22 @@ static pls_status parse_fields(const pls_node *list, const char *what, char name
     return PLS_OK;
 }
 
+/// An observer of a plugin.
+static pls_status parse_own(const pls_scene *scene, const pls_node *node, pls_observer_def *def, const char **name)
+{
+    const pls_node *map;
+    const pls_observer_ops *ops = pls_scene_named_operations(&scene->observer_ops, node, &map);
+    const pls_node *group = pls_node_get(map, "bodies");
+    *name = ops->name;
+    PLS_TRY(check_group(scene, group, true));
+    def->own = (pls_own_def){.ops = ops, .given = true};
+    snprintf(def->own.group, sizeof def->own.group, "%s", group->text);
+    pls_scene_parameters(ops->parameters, map, def->own.values);
+    double constants[PLS_MAX_VALUES] = {0.0};
+    if (!ops->prepare) return PLS_OK; // what the table cannot tell is said with its place in the scene
+    return pls_node_context(ops->prepare(def->own.values, scene->dimension, constants), map, "'%s'", ops->name);
+}
+
 static pls_status parse_kind(const pls_scene *scene, const pls_node *node, pls_observer_def *def, const char **name)
 {
     const pls_node *particle = pls_node_get(node, "particle"), *checkpoint = pls_node_get(node, "checkpoint");
@@ -206,6 +222,11 @@ static pls_status parse_kind(const pls_scene *scene, const pls_node *node, pls_o
         PLS_TRY(check_group(scene, particle, false));
         snprintf(def->particle.group, sizeof def->particle.group, "%s", particle->text);
         return parse_fields(pls_node_get(node, "quantities"), "quantities", def->particle.quantities, &def->particle.quantity_count);
+    }
+    if (!pls_node_get(node, "frames"))
+    {
+        def->kind = PLS_OBSERVE_OWN;
+        return parse_own(scene, node, def, name);
     }
     def->kind = PLS_OBSERVE_FRAMES;
     *name = "frames";

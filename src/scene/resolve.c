@@ -408,30 +408,42 @@ static pls_status resolve_named(pls_resolver *r, const pls_key *key, pls_node *n
     return PLS_OK;
 }
 
-/// Which of "a|b|c" an entry is: the section whose first key it has.
-static pls_status choose_section(const pls_key *key, const pls_node *entry, const char *label, char section[64])
+enum { MOST_KINDS = 64 }; ///< of entries of a list that messages compare with; more would not be read
+
+/// Keys that say that an entry is of a section: the section's first, or the names of plugins' operations. Appended to `names`.
+static void telling_keys(const pls_resolver *r, const char *section, const char *names[MOST_KINDS], size_t *count)
+{
+    const pls_registry *operations = pls_scene_operations_of(r->scene, section);
+    size_t keys;
+    if (!operations && *count < MOST_KINDS) names[(*count)++] = pls_schema_keys(section, &keys)->name;
+    for (size_t k = 0; operations && k < operations->count && *count < MOST_KINDS; ++k) names[(*count)++] = operations->entry[k].name;
+}
+
+/// Which of "a|b|c" an entry is: the section that one of its keys tells of.
+static pls_status choose_section(const pls_resolver *r, const pls_key *key, const pls_node *entry, const char *label, char section[64])
 {
     if (!strchr(key->sub, '|') || entry->kind != PLS_NODE_MAP)
     {
         pls_schema_word(key->sub, 0, section);
         return PLS_OK;
     }
-    const char *first[8];
-    size_t kinds = 0;
-    for (char word[64]; kinds < 8 && pls_schema_word(key->sub, kinds, word); ++kinds)
+    const char *known[MOST_KINDS];
+    size_t kinds = 0, told = 0;
+    for (size_t k = 0; pls_schema_word(key->sub, k, section); ++k)
     {
-        size_t count;
-        first[kinds] = pls_schema_keys(word, &count)->name;
-        snprintf(section, 64, "%s", word);
-        if (pls_node_get(entry, first[kinds])) return PLS_OK;
+        telling_keys(r, section, known, &kinds);
+        for (; told < kinds; ++told)
+        {
+            if (pls_node_get(entry, known[told])) return PLS_OK;
+        }
     }
-    char hint[300];
+    char hint[600];
     const char *word = "";
     for (size_t k = 0; k < entry->count && !*word; ++k)
     {
-        if (pls_nearest_word(entry->key[k]->text, first, kinds)) word = entry->key[k]->text;
+        if (pls_nearest_word(entry->key[k]->text, known, kinds)) word = entry->key[k]->text;
     }
-    pls_scene_hint(hint, sizeof hint, word, "one of these keys says what it is", first, kinds);
+    pls_scene_hint(hint, sizeof hint, word, "one of these keys says what it is", known, kinds);
     return pls_node_fail(entry, hint, "cannot tell what %s is", label);
 }
 
@@ -449,11 +461,15 @@ static pls_status resolve_list(pls_resolver *r, const pls_key *key, pls_node *no
             PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "%s[%zu] '%.64s'", key->name, k, name->text));
         else
             PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "%s[%zu]", key->name, k));
-        PLS_TRY(choose_section(key, entry, inner, section));
+        PLS_TRY(choose_section(r, key, entry, inner, section));
         if (strcmp(section, "contact") == 0)
             PLS_TRY(pls_resolve_contact(r, entry, inner));
         else if (strcmp(section, "state") == 0)
             PLS_TRY(pls_resolve_state(r, entry, inner));
+        else if (strcmp(section, "force_plugin") == 0)
+            PLS_TRY(pls_resolve_force_of_plugin(r, entry, inner));
+        else if (strcmp(section, "observe_plugin") == 0)
+            PLS_TRY(pls_resolve_observer_of_plugin(r, entry, inner));
         else
             PLS_TRY(resolve_section(r, entry, section, inner));
     }
@@ -500,6 +516,7 @@ static pls_status resolve_value(pls_resolver *r, const pls_key *key, pls_node *n
         case PLS_KEY_NAMED: return resolve_named(r, key, node, label);
         case PLS_KEY_LIST: return resolve_list(r, key, node, label);
         case PLS_KEY_VARIABLES: return PLS_OK; // resolved before everything else
+        case PLS_KEY_PLUGIN: return PLS_OK;    // resolved before, with the table of its operations
         case PLS_KEY_SHAPES: return pls_resolve_shapes(r, key, node, label);
     }
     return PLS_OK;

@@ -1,5 +1,5 @@
 // resolve_scene.c -- the order in which a scene is resolved, and the maps whose keys depend on their contents: vars, shapes, contact laws,
-// states.
+// forces and observers of plugins, states.
 //
 // The version, the dimension, vars, plugins and the names of states come first, because everything else is read with them.
 
@@ -265,6 +265,41 @@ pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *lab
     }
     if (entry->kind == PLS_NODE_MAP && !law) return pls_node_fail(entry, "law: name of a contact law", "missing key 'law' in %s", label);
     return pls_resolve_map(r, entry, keys, count, label);
+}
+
+/// An entry that names operations of a plugin: first the map of its numbers, then the entry itself, whose row NAME stands for that map.
+static pls_status resolve_of_plugin(pls_resolver *r, const char *section, const char *name, const char *meaning, const pls_parameter *table,
+                                    unsigned uses, pls_node *entry, const char *label)
+{
+    pls_key keys[PLS_MAX_KEYS];
+    size_t count;
+    const char *inner;
+    const pls_key *rows = pls_schema_keys(section, &count); // the first is NAME
+    size_t beside;
+    const pls_key *shared = pls_schema_keys(rows->sub, &beside);
+    memcpy(keys, shared, beside * sizeof *keys);
+    PLS_TRY(parameter_keys(r, table, uses, keys, &beside));
+    PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "'%s' of %s", name, label));
+    PLS_TRY(pls_resolve_map(r, pls_node_get(entry, name), keys, beside, inner));
+
+    memcpy(keys, rows, count * sizeof *keys);
+    keys->name = name;
+    keys->meaning = meaning ? meaning : "";
+    return pls_resolve_map(r, entry, keys, count, label);
+}
+
+pls_status pls_resolve_force_of_plugin(pls_resolver *r, pls_node *entry, const char *label)
+{
+    const pls_node *map;
+    const pls_force_ops *ops = pls_scene_named_operations(&r->scene->force_ops, entry, &map);
+    return resolve_of_plugin(r, "force_plugin", ops->name, ops->meaning, ops->parameters, PLS_USES_TIME | PLS_USES_STATES, entry, label);
+}
+
+pls_status pls_resolve_observer_of_plugin(pls_resolver *r, pls_node *entry, const char *label)
+{
+    const pls_node *map;
+    const pls_observer_ops *ops = pls_scene_named_operations(&r->scene->observer_ops, entry, &map);
+    return resolve_of_plugin(r, "observe_plugin", ops->name, ops->meaning, ops->parameters, 0, entry, label);
 }
 
 pls_status pls_resolve_state(pls_resolver *r, pls_node *entry, const char *label)

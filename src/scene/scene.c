@@ -69,6 +69,8 @@ void pls_scene_free(pls_scene *scene)
     pls_scene_unload_plugins(scene);
     pls_registry_free(&scene->shape_ops);
     pls_registry_free(&scene->law_ops);
+    pls_registry_free(&scene->force_ops);
+    pls_registry_free(&scene->observer_ops);
     pls_release(&scene->inputs);
     pls_arena_clear(&scene->arena);
     pls_release(&scene);

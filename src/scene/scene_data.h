@@ -79,8 +79,9 @@ struct pls_scene
     int dimension;
     double thickness;
 
-    pls_registry shape_ops, law_ops; ///< built-in and plugins'
-    void **plugins;                  ///< dlopen handles
+    pls_registry shape_ops, law_ops;      ///< built-in and plugins'
+    pls_registry force_ops, observer_ops; ///< plugins'
+    void **plugins;                       ///< dlopen handles
     size_t plugin_count, plugin_capacity;
 
     pls_constant *vars;
@@ -118,6 +119,10 @@ pls_status pls_scene_resolve(pls_scene *scene);
 pls_status pls_scene_load_builtins(pls_scene *scene);
 pls_status pls_scene_load_plugin(pls_scene *scene, const pls_node *path);
 void pls_scene_unload_plugins(pls_scene *scene);
+/// The plugins' operations that entries of this section can name ("force_plugin", "observe_plugin"), null for other sections.
+const pls_registry *pls_scene_operations_of(const pls_scene *scene, const char *section);
+/// The operations of a plugin that an entry of `forces` or `observe` names, and the map of their numbers; null when it names none.
+const void *pls_scene_named_operations(const pls_registry *operations, const pls_node *entry, const pls_node **map);
 
 /// parse_*.c: the lists, and the checks that concern several keys
 pls_status pls_scene_parse_materials(pls_scene *scene);

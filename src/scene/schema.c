@@ -49,6 +49,8 @@ static const pls_section sections[] = {
     {"field_force", "forces[k]", "A field of forces given by expressions."},
     {"field", "forces[k].field",
      "Force or acceleration as a function of place, time and the body's own motion. Exactly one of `force` and `acceleration`."},
+    {"force_plugin", "forces[k]", "A body force of a plugin. What it takes is said by `particls info PLUGIN.so`."},
+    {"plugin", "forces[k].NAME, observe[k].NAME", "What stands beside the parameters of a plugin's force or observer."},
     {"state", "states[k]",
      "A further ordinary differential equation, advanced with the bodies by the midpoint rule. Its name may be used in expressions of "
      "materials, contact laws and "
@@ -61,6 +63,8 @@ static const pls_section sections[] = {
     {"observe_particle", "observe[k]", "Quantities of each body of an entry, a line per look in series/NAME.csv."},
     {"observe_frames", "observe[k]", "Pictures of all bodies for ParaView in frames/."},
     {"observe_checkpoint", "observe[k]", "Checkpoints from which a run goes on; the last two are kept."},
+    {"observe_plugin", "observe[k]",
+     "An observer of a plugin, a line per look in series/NAME.csv. What it takes and writes is said by `particls info PLUGIN.so`."},
     {"checkpoint", "observe[k].checkpoint", "When checkpoints are written: exactly one of these."},
     {"volume", "observe[k].volume", "The volume that averages refer to."},
 };
@@ -73,14 +77,15 @@ static const pls_section sections[] = {
 #define REQUIRED PLS_KEY_REQUIRED
 #define OPEN     PLS_KEY_OPEN_MINIMUM
 
-#define SCHEDULE(section)                                                                                                           \
-    {section, "every", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "s", NULL, POSITIVE, "time between looks; give this or `every_steps`"}, \
-        {section, "every_steps", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 1, 1e15, "steps between looks"},                      \
-        {section, "start", PLS_KEY_NUMBER, 0, 0, NULL, NULL, "s", "0", POSITIVE, "first look"},                                     \
-        {section, "end", PLS_KEY_NUMBER, PLS_KEY_INFINITE, 0, NULL, NULL, "s", "inf", POSITIVE, "no looks after this time"},        \
-    {                                                                                                                               \
-        section, "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY,                                                             \
-            "name of its file; by default the entry for a particle observer, else collection or frames; with a number if taken"     \
+#define SCHEDULE(section)                                                                                                                 \
+    {section, "every", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "s", NULL, POSITIVE, "time between looks; give this or `every_steps`"},       \
+        {section, "every_steps", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 1, 1e15, "steps between looks"},                            \
+        {section, "start", PLS_KEY_NUMBER, 0, 0, NULL, NULL, "s", "0", POSITIVE, "first look"},                                           \
+        {section, "end", PLS_KEY_NUMBER, PLS_KEY_INFINITE, 0, NULL, NULL, "s", "inf", POSITIVE, "no looks after this time"},              \
+    {                                                                                                                                     \
+        section, "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY,                                                                   \
+            "name of its file; by default the entry for a particle observer, else collection, frames or the plugin's name of it; with a " \
+            "number if taken"                                                                                                             \
     }
 
 static const pls_key keys[] = {
@@ -91,19 +96,20 @@ static const pls_key keys[] = {
     {"scene", "thickness", PLS_KEY_NUMBER, OPEN | PLS_KEY_ONLY_2D, 0, NULL, NULL, "m", "1", POSITIVE, "depth of bodies in z"},
     {"scene", "vars", PLS_KEY_VARIABLES, 0, 0, NULL, NULL, "", NULL, ANY,
      "names for numbers, usable in every expression; later ones may use earlier ones"},
-    {"scene", "plugins", PLS_KEY_PATHS, PLS_KEY_MAY_BE_EMPTY, 0, NULL, NULL, "", NULL, ANY, "shared objects with further shapes and laws"},
+    {"scene", "plugins", PLS_KEY_PATHS, PLS_KEY_MAY_BE_EMPTY, 0, NULL, NULL, "", NULL, ANY,
+     "shared objects with further shapes, laws, forces and observers"},
     {"scene", "materials", PLS_KEY_NAMED, REQUIRED, 0, NULL, "material", "", NULL, ANY, "materials by name"},
     {"scene", "shapes", PLS_KEY_SHAPES, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "shapes by name"},
     {"scene", "domain", PLS_KEY_SECTION, 0, 0, NULL, "domain", "", NULL, ANY, "periodic box"},
     {"scene", "bodies", PLS_KEY_LIST, REQUIRED, 0, NULL, "body", "", NULL, ANY, "bodies and groups of bodies"},
     {"scene", "contact", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "contact", "", NULL, ANY, "contact laws"},
-    {"scene", "forces", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "gravity|field_force", "", NULL, ANY, "body forces"},
+    {"scene", "forces", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "gravity|field_force|force_plugin", "", NULL, ANY, "body forces"},
     {"scene", "states", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "state", "", NULL, ANY, "further differential equations"},
     {"scene", "time", PLS_KEY_SECTION, REQUIRED, 0, NULL, "time", "", NULL, ANY, "duration and time step"},
     {"scene", "neighbours", PLS_KEY_SECTION, 0, 0, NULL, "neighbours", "", "", ANY, "neighbour search"},
     {"scene", "guard", PLS_KEY_SECTION, 0, 0, NULL, "guard", "", "", ANY, "stops a run that has gone wrong"},
     {"scene", "observe", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL,
-     "observe_collection|observe_particle|observe_frames|observe_checkpoint", "", NULL, ANY, "what is measured and when"},
+     "observe_collection|observe_particle|observe_frames|observe_checkpoint|observe_plugin", "", NULL, ANY, "what is measured and when"},
 
     {"material", "density", PLS_KEY_NUMBER, OPEN, TIMELY, NULL, NULL, "kg/m^3", NULL, POSITIVE, "mass per volume, in 2D too"},
     {"material", "young_modulus", PLS_KEY_NUMBER, OPEN, TIMELY, NULL, NULL, "Pa", NULL, POSITIVE, "Young's modulus E"},
@@ -217,6 +223,10 @@ static const pls_key keys[] = {
      "the field acts only where this is true, for example \"z > 0.5 && t < 1\""},
     {"field", "bodies", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "all", ANY, "name of a body entry, or all"},
 
+    {"force_plugin", "NAME", PLS_KEY_PLUGIN, REQUIRED, 0, NULL, "plugin", "", NULL, ANY,
+     "the plugin's name of the force; numbers may be expressions over t and states"},
+    {"plugin", "bodies", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "all", ANY, "name of a body entry, or all"},
+
     {"state", "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY,
      "name for expressions; required unless `radius` is given (then ENTRY_radius)"},
     {"state", "of", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "world", ANY, "its body: name of an entry, one of many as \"pack[12]\"; or world"},
@@ -262,6 +272,8 @@ static const pls_key keys[] = {
     {"observe_frames", "contacts", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "false", ANY, "write contacts as lines as well"},
     SCHEDULE("observe_frames"),
     {"observe_checkpoint", "checkpoint", PLS_KEY_SECTION, REQUIRED, 0, NULL, "checkpoint", "", NULL, ANY, "when"},
+    {"observe_plugin", "NAME", PLS_KEY_PLUGIN, REQUIRED, 0, NULL, "plugin", "", NULL, ANY, "the plugin's name of the observer"},
+    SCHEDULE("observe_plugin"),
     {"checkpoint", "every", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "s", NULL, POSITIVE, "time between checkpoints"},
     {"checkpoint", "every_steps", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 1, 1e15, "steps between checkpoints"},
     {"volume", "box", PLS_KEY_SECTION, REQUIRED, 0, NULL, "box", "", NULL, ANY, "a box"},

@@ -1,9 +1,11 @@
 // schema.h -- the one table of scene keys.
 //
-// The reader (resolve.c), suggestions for misspelt keys, scene.used.yaml, the JSON Schema and the reference page all come from it. Shapes
-// and laws bring their own tables of parameters (<particls/parameter.h>), which are turned into the same kind of rows.
+// The reader (resolve.c), suggestions for misspelt keys, scene.used.yaml, the JSON Schema and the reference page all come from it. Shapes,
+// laws, and the forces and observers of plugins bring their own tables of parameters (<particls/parameter.h>), which are turned into the same kind of rows.
 #ifndef PLS_SCENE_SCHEMA_H
 #define PLS_SCENE_SCHEMA_H
+
+#include "base/text.h"
 
 #include <particls/parameter.h>
 
@@ -36,6 +38,7 @@ typedef enum pls_key_type {
     PLS_KEY_CHOICE,      ///< a map with exactly one key of section `sub`
     PLS_KEY_NAMED,       ///< a map from the user's names to section `sub`
     PLS_KEY_LIST,        ///< a list of maps of section `sub`; "a|b|c": the one whose first key is there
+    PLS_KEY_PLUGIN,      ///< stands for the name of a plugin's force or observer: a map of its parameters and of section `sub`
     PLS_KEY_VARIABLES,   ///< a map from the user's names to numbers
     PLS_KEY_SHAPES       ///< a map from the user's names to {shape: {parameters}}
 } pls_key_type;
@@ -87,9 +90,15 @@ enum { PLS_MAX_KEYS = 64 }; ///< of one map, parameters of a shape or law includ
 const pls_section *pls_schema_sections(size_t *count);
 /// Rows of a section, `*count` of them (they lie together in the table).
 const pls_key *pls_schema_keys(const char *section, size_t *count);
-/// A row for a parameter of a shape, or of a law, whose vectors have three components in 2D too. `initial` holds 32 bytes for the default's text and must live as long as the row.
+/// A row for a parameter of a shape: vectors have the scene's dimensions, and points, paths and other shapes may be asked for. `initial` as below.
 pls_key pls_schema_shape_parameter(const pls_parameter *parameter, char initial[32]);
+/// A row for a parameter of a law, force or observer, whose vectors have three components in 2D too. `initial` holds 32 bytes for the default's text and must live as long as the row.
 pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char initial[32]);
+
+/// Whose table of parameters it is: shapes take what is not a number too, and the numbers of laws and forces may change in time.
+typedef enum pls_table_owner { PLS_OF_SHAPE, PLS_OF_LAW, PLS_OF_FORCE, PLS_OF_OBSERVER } pls_table_owner;
+/// A heading and a table of parameters on a reference page.
+pls_status pls_page_parameters(pls_text *out, const char *name, const char *meaning, const pls_parameter *table, pls_table_owner owner);
 
 /// "greater than 0 and at most 1".
 void pls_schema_range(const pls_key *key, char text[128]);

@@ -128,6 +128,7 @@ static pls_status json_type(pls_text *out, const pls_key *key)
             return pls_text_print(out, "{\"type\": \"object\", \"minProperties\": 1, \"additionalProperties\": {\"$ref\": \"#/$defs/%s\"}}",
                                   key->sub);
         case PLS_KEY_LIST: return json_sections(out, key);
+        case PLS_KEY_PLUGIN: break; // json_plugin
         case PLS_KEY_VARIABLES:
             return pls_text_print(out,
                                   "{\"type\": [\"object\", \"null\"], \"additionalProperties\": {\"type\": [\"number\", \"string\"]}}");
@@ -178,25 +179,24 @@ static pls_status json_map(pls_text *out, const pls_key *keys, size_t count, boo
     return pls_text_print(out, closed ? ", \"additionalProperties\": false" : "");
 }
 
-typedef enum table_owner { OF_SHAPE, OF_LAW } table_owner;
-
 /// Rows of a table of parameters; `initial` holds their defaults' texts.
-static size_t parameter_keys(const pls_parameter *table, table_owner owner, pls_key keys[PLS_MAX_KEYS], char initial[PLS_MAX_KEYS][32])
+static size_t parameter_keys(const pls_parameter *table, pls_table_owner owner, pls_key keys[PLS_MAX_KEYS], char initial[PLS_MAX_KEYS][32])
 {
+    const bool timely = owner == PLS_OF_LAW || owner == PLS_OF_FORCE;
     size_t count = 0;
     for (; table && table->name && count < PLS_MAX_KEYS; ++table, ++count)
-        keys[count] = owner == OF_SHAPE ? pls_schema_shape_parameter(table, initial[count])
-                                        : pls_schema_parameter(table, PLS_USES_TIME | PLS_USES_STATES, initial[count]);
+        keys[count] = owner == PLS_OF_SHAPE ? pls_schema_shape_parameter(table, initial[count])
+                                            : pls_schema_parameter(table, timely ? PLS_USES_TIME | PLS_USES_STATES : 0, initial[count]);
     return count;
 }
 
 /// The map of a shape holds nothing else, that of a contact law does.
-static pls_status json_parameters(pls_text *out, const pls_parameter *table, table_owner owner)
+static pls_status json_parameters(pls_text *out, const pls_parameter *table, pls_table_owner owner)
 {
     pls_key keys[PLS_MAX_KEYS];
     char initial[PLS_MAX_KEYS][32];
     size_t count = parameter_keys(table, owner, keys, initial);
-    return json_map(out, keys, count, owner == OF_SHAPE);
+    return json_map(out, keys, count, owner == PLS_OF_SHAPE);
 }
 
 static pls_status json_shape(pls_text *out)
@@ -209,7 +209,7 @@ static pls_status json_shape(pls_text *out)
         PLS_TRY(pls_text_print(out, ": {\"type\": [\"object\", \"null\"], \"description\": "));
         PLS_TRY(json_string(out, (*ops)->meaning));
         PLS_TRY(pls_text_print(out, ", "));
-        PLS_TRY(json_parameters(out, (*ops)->parameters, OF_SHAPE));
+        PLS_TRY(json_parameters(out, (*ops)->parameters, PLS_OF_SHAPE));
         PLS_TRY(pls_text_print(out, "}"));
     }
     return pls_text_print(out, "}}");
@@ -227,10 +227,40 @@ static pls_status json_laws(pls_text *out)
         PLS_TRY(pls_text_print(out, "}}}, \"then\": {\"description\": "));
         PLS_TRY(json_string(out, (*ops)->meaning));
         PLS_TRY(pls_text_print(out, ", "));
-        PLS_TRY(json_parameters(out, (*ops)->parameters, OF_LAW));
+        PLS_TRY(json_parameters(out, (*ops)->parameters, PLS_OF_LAW));
         PLS_TRY(pls_text_print(out, "}}"));
     }
     return pls_text_print(out, "]");
+}
+
+/// First keys of the other sections that stand in the same list: "a|b|c" of the list, without `section`.
+static pls_status json_not_others(pls_text *out, const char *list, const char *section)
+{
+    char word[64];
+    size_t count;
+    PLS_TRY(pls_text_print(out, "\"not\": {\"anyOf\": ["));
+    bool any = false;
+    for (size_t k = 0; pls_schema_word(list, k, word); ++k)
+    {
+        if (strcmp(word, section) == 0) continue;
+        PLS_TRY(pls_text_print(out, "%s{\"required\": [", any ? ", " : ""));
+        PLS_TRY(json_string(out, pls_schema_keys(word, &count)->name));
+        PLS_TRY(pls_text_print(out, "]}"));
+        any = true;
+    }
+    return pls_text_print(out, "]}");
+}
+
+/// A force or observer of a plugin: one further key, whose name and contents only the plugin knows, beside the rows of the section.
+static pls_status json_plugin(pls_text *out, const char *section, const pls_key *keys, size_t count)
+{
+    size_t all;
+    const pls_key *list = pls_schema_keys("scene", &all);
+    while (!list->sub || !strstr(list->sub, section)) ++list;
+    PLS_TRY(json_map(out, keys + 1, count - 1, false)); // without the row NAME, the first
+    PLS_TRY(pls_text_print(out, ", \"minProperties\": 1, "));
+    PLS_TRY(json_not_others(out, list->sub, section));
+    return pls_text_print(out, ", \"additionalProperties\": {\"type\": [\"object\", \"null\"]}");
 }
 
 static pls_status write_json(pls_text *out)
@@ -243,14 +273,14 @@ static pls_status write_json(pls_text *out)
     {
         const pls_key *keys = pls_schema_keys(section[k].name, &count);
         bool contact = strcmp(section[k].name, "contact") == 0;
-        bool nothing = true;
+        bool nothing = true, plugin = count > 0 && keys->type == PLS_KEY_PLUGIN;
         for (size_t j = 0; j < count; ++j) nothing = nothing && !(keys[j].flags & PLS_KEY_REQUIRED);
         PLS_TRY(pls_text_print(out, "%s\n    ", k ? "," : ""));
         PLS_TRY(json_string(out, section[k].name));
         PLS_TRY(pls_text_print(out, ": {\"type\": %s, \"description\": ", nothing ? "[\"object\", \"null\"]" : "\"object\""));
         PLS_TRY(json_string(out, section[k].meaning));
         PLS_TRY(pls_text_print(out, ", "));
-        PLS_TRY(json_map(out, keys, count, !contact));
+        PLS_TRY(plugin ? json_plugin(out, section[k].name, keys, count) : json_map(out, keys, count, !contact));
         if (contact) PLS_TRY(json_laws(out));
         PLS_TRY(pls_text_print(out, "}"));
     }
@@ -290,6 +320,7 @@ static const char *type_text(pls_key_type type)
         case PLS_KEY_CHOICE: return "map of one key";
         case PLS_KEY_NAMED: return "map of names";
         case PLS_KEY_LIST: return "list of maps";
+        case PLS_KEY_PLUGIN: return "map";
         case PLS_KEY_VARIABLES: return "map of numbers";
         case PLS_KEY_SHAPES: return "map of shapes";
     }
@@ -356,7 +387,7 @@ static pls_status page_keys(pls_text *out, const pls_key *keys, size_t count)
     return pls_text_print(out, "\n");
 }
 
-static pls_status page_parameters(pls_text *out, const char *name, const char *meaning, const pls_parameter *table, table_owner owner)
+pls_status pls_page_parameters(pls_text *out, const char *name, const char *meaning, const pls_parameter *table, pls_table_owner owner)
 {
     pls_key keys[PLS_MAX_KEYS];
     char initial[PLS_MAX_KEYS][32];
@@ -402,10 +433,10 @@ static pls_status write_page(pls_text *out)
     }
     PLS_TRY(pls_text_print(out, "## Shapes\n\n`shapes: {NAME: {SHAPE: {parameters}}}`\n\n"));
     for (const pls_shape_ops *const *ops = pls_builtin_shapes(); *ops; ++ops)
-        PLS_TRY(page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, OF_SHAPE));
+        PLS_TRY(pls_page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, PLS_OF_SHAPE));
     PLS_TRY(pls_text_print(out, "## Contact laws\n\n`contact: [{between: [a, b], law: LAW, parameters}]`\n\n"));
     for (const pls_law_ops *const *ops = pls_builtin_laws(); *ops; ++ops)
-        PLS_TRY(page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, OF_LAW));
+        PLS_TRY(pls_page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, PLS_OF_LAW));
     return PLS_OK;
 }
 

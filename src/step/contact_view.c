@@ -102,10 +102,11 @@ static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
     law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);
 }
 
-pls_status pls_contact_view_make(pls_world *world, pls_contact_view *view)
+pls_status pls_contact_view_make(const pls_world *world, pls_contact_view *view)
 {
     view->count = 0;
-    PLS_TRY(pls_world_prepare(world));
+    if (!world->prepared)
+        PLS_TRY(pls_world_prepare((pls_world *)world)); // worlds are never constant themselves, only those who look are bound
     if (world->memory_holds)
         return pls_fail(PLS_INVALID_ARGUMENT, "bodies or laws have changed since the last step; contacts are known again after the next");
     const pls_pair_list *list = &world->list;

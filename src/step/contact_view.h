@@ -27,7 +27,7 @@ typedef struct pls_contact_view
     size_t count, capacity;
 } pls_contact_view;
 
-pls_status pls_contact_view_make(pls_world *world, pls_contact_view *view);
+pls_status pls_contact_view_make(const pls_world *world, pls_contact_view *view);
 void pls_contact_view_free(pls_contact_view *view);
 
 #endif

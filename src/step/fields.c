@@ -6,6 +6,20 @@
 
 #include <string.h>
 
+double pls_field_value(const pls_field_view *view, size_t row, int component)
+{
+    const char *value = (const char *)view->data + row * view->stride;
+    switch (view->type)
+    {
+        case PLS_F64: return ((const double *)value)[component];
+        case PLS_F32: return (double)((const float *)value)[component];
+        case PLS_U32: return (double)((const uint32_t *)value)[component];
+        case PLS_U16: return (double)((const uint16_t *)value)[component];
+        case PLS_U8: return (double)((const uint8_t *)value)[component];
+    }
+    return NAN;
+}
+
 size_t pls_type_size(pls_type type)
 {
     switch (type)

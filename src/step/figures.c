@@ -36,9 +36,7 @@ static void add_body(const pls_world *world, uint32_t row, double *sum)
     sum[ROTATION] += 0.5 * pls_dot(own, turn);
     sum[MOMENTUM] += momentum.x, sum[MOMENTUM + 1] += momentum.y, sum[MOMENTUM + 2] += momentum.z;
     sum[MOMENTUM + 3] += angular.x, sum[MOMENTUM + 4] += angular.y, sum[MOMENTUM + 5] += angular.z;
-    for (size_t k = 0; k < world->force_count; ++k)
-        if (world->force[k].ops->potential)
-            sum[POTENTIAL] += world->force[k].ops->potential(world->force[k].context, world->time, x, m->mass);
+    sum[POTENTIAL] += pls_force_potential(world, b, row);
 }
 
 static pls_status sum_bodies(const pls_world *world, double *total)
@@ -57,7 +55,7 @@ static pls_status sum_bodies(const pls_world *world, double *total)
     return PLS_OK;
 }
 
-pls_status pls_world_get_figures(pls_world *world, pls_world_figures *f)
+pls_status pls_world_get_figures(const pls_world *world, pls_world_figures *f)
 {
     double sum[SUMS];
     PLS_TRY(sum_bodies(world, sum));

@@ -81,6 +81,7 @@ static pls_status apply_binding(pls_world *world, const pls_binding *binding, do
     double value = NAN;
     PLS_TRY(binding->function(binding->context, time, world->state_value, &value));
     if (!isfinite(value)) return pls_fail(PLS_NOT_A_NUMBER, "the value given for '%s' is %g at t = %g s", binding->name, value, time);
+    if (binding->force.index1) return pls_world_set_force_parameter(world, binding->force, binding->name, value);
     if (binding->of_material) return pls_world_set_material_value(world, (pls_material_id){binding->a}, binding->name, value);
     return pls_world_set_law_parameter(world, (pls_material_id){binding->a}, (pls_material_id){binding->b}, binding->name, value);
 }

@@ -225,7 +225,8 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
     const pls_pair_list *list = &world->list;
     sweep s = {.world = world, .input = pls_contact_input_of(world, dt), .time = time, .go_on = go_on, .failed_at = SIZE_MAX};
     for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
-#pragma omp parallel if (list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
+#pragma omp parallel if (list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || \
+                         bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
     {
         share mine = share_of(world, omp_get_thread_num(), omp_get_num_threads());
         if (world->solids.count > 0) sweep_solids(&s, &mine);

@@ -341,6 +341,21 @@ pls_status pls_world_bind_law_parameter(pls_world *world, pls_material_id a, pls
     return add_binding(world, &binding);
 }
 
+pls_status pls_world_bind_force_parameter(pls_world *world, pls_force_id force, const char *name, pls_parameter_function *function,
+                                          void *context, void (*destroy)(void *))
+{
+    pls_binding binding = {.function = function, .context = context, .destroy = destroy, .force = force};
+    int place;
+    pls_status status = pls_find_force_parameter(world, force, name, &place);
+    if (status != PLS_OK)
+    {
+        if (destroy) destroy(context);
+        return status;
+    }
+    snprintf(binding.name, sizeof binding.name, "%s", name);
+    return add_binding(world, &binding);
+}
+
 pls_status pls_world_bind_material_value(pls_world *world, pls_material_id material, const char *name, pls_parameter_function *function,
                                          void *context, void (*destroy)(void *))
 {
@@ -357,25 +372,7 @@ pls_status pls_world_bind_material_value(pls_world *world, pls_material_id mater
     return add_binding(world, &binding);
 }
 
-// ---- forces and states ---------------------------------------------------------------------------------------------------------------------------------
-
-pls_status pls_world_add_force(pls_world *world, const pls_force_ops *ops, void *context)
-{
-    pls_status status = PLS_OK;
-    if (!ops || !ops->evaluate) return pls_fail(PLS_INVALID_ARGUMENT, "a force needs evaluate");
-    if (ops->api_version != PLS_API_VERSION)
-        status = pls_fail(PLS_VERSION, "force '%s' is made for API %u, this library has %d: compile it anew", ops->name, ops->api_version,
-                          PLS_API_VERSION);
-    if (status == PLS_OK)
-        status = pls_reserve(&world->force, &world->force_capacity, world->force_count + 1, sizeof *world->force, "body forces");
-    if (status != PLS_OK)
-    {
-        if (ops->destroy) ops->destroy(context);
-        return status;
-    }
-    world->force[world->force_count++] = (pls_force_instance){ops, context};
-    return PLS_OK;
-}
+// ---- states --------------------------------------------------------------------------------------------------------------------------------------------
 
 static pls_status reserve_values(pls_world *world, size_t count)
 {
@@ -640,6 +637,18 @@ const uint32_t *pls_world_rows_by_number(const pls_world *world, size_t *count)
 {
     *count = world->bodies.numbers;
     return world->bodies.row_of;
+}
+
+pls_body_id pls_world_next_body(const pls_world *world, pls_group_id group, pls_body_id previous)
+{
+    const pls_bodies *b = &world->bodies;
+    for (size_t number = previous.index1; number < b->numbers; ++number) // its number is index1 - 1
+    {
+        uint32_t row = b->row_of[number];
+        if (row == PLS_NO_ROW || (group.index1 && b->kind[row].group != group.index1)) continue;
+        return (pls_body_id){(uint32_t)number + 1, b->generation_of[number]};
+    }
+    return (pls_body_id){0};
 }
 
 pls_status pls_body_get(const pls_world *world, pls_body_id id, pls_body_motion *m)

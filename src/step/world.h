@@ -22,6 +22,8 @@ typedef struct pls_force_instance
 {
     const pls_force_ops *ops;
     void *context;
+    uint32_t group; ///< index1 of the bodies it acts on; 0: all
+    double values[PLS_MAX_VALUES], constants[PLS_MAX_VALUES];
 } pls_force_instance;
 
 typedef struct pls_state_instance
@@ -31,13 +33,14 @@ typedef struct pls_state_instance
     pls_vec3 position, velocity, spin; ///< of its body before the drift
 } pls_state_instance;
 
-/// A law parameter or material value that follows a function of time and states.
+/// A parameter of a law or force, or a material's value, that follows a function of time and states.
 typedef struct pls_binding
 {
     pls_parameter_function *function;
     void *context;
     void (*destroy)(void *);
-    uint16_t a, b; ///< materials of the law; a: the material whose value follows, if `of_material`
+    pls_force_id force; ///< the force whose parameter follows; null: of a law or material
+    uint16_t a, b;      ///< materials of the law; a: the material whose value follows, if `of_material`
     bool of_material;
     char name[PLS_NAME_SIZE];
 } pls_binding;
@@ -164,6 +167,10 @@ pls_status pls_world_resume(pls_world *world);
 
 // forces.c
 pls_status pls_body_forces(const pls_world *world, size_t first, size_t last, double time, double *scratch, double *force, double *torque);
+/// Place of a force's parameter among its values. NOT_FOUND names what is wrong.
+pls_status pls_find_force_parameter(const pls_world *world, pls_force_id force, const char *name, int *place);
+/// Potential energy of the body in row `row` of `bodies` in all forces of the world that have one [J].
+double pls_force_potential(const pls_world *world, const pls_bodies *bodies, uint32_t row);
 enum { PLS_FORCE_SCRATCH = (11 + 6) * PLS_FORCE_BATCH }; ///< doubles: what forces read and what they give
 
 // guard.c

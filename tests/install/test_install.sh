@@ -49,5 +49,19 @@ C
 read -r -a flags <<<"$(pkg-config --variable=plugin_cflags particls)"
 "$CC" -Wall -Wextra -Werror "${flags[@]}" plugin.c -o plugin.so
 
-if [ -x "$PARTICLS" ]; then "$prefix/bin/particls" --help >/dev/null; fi
+# The installed program says how to compile a plugin, from any folder, and loads what comes of it.
+if [ -x "$PARTICLS" ]; then
+    "$prefix/bin/particls" --help >/dev/null
+    mkdir elsewhere
+    cp "$PARTICLS_SOURCE/plugins/template/my_plugin.c" elsewhere
+    (
+        PATH=$prefix/bin:$PATH
+        cd elsewhere
+        "$CC" $(particls plugin --cflags) -Wall -Wextra -Werror my_plugin.c -o my_plugin.so
+        case "$(particls plugin --cflags)" in *"-I$prefix/include") ;; *) echo "the flags do not name the installed headers" >&2; exit 1 ;; esac
+        particls info my_plugin.so | grep -q '### my_observer'
+        cd ..
+        particls info elsewhere/my_plugin.so | grep -q '### my_force'
+    )
+fi
 echo "installed, found and linked"

@@ -11,14 +11,17 @@ complain() {
 
 read -r -a flags <<<"$("$PARTICLS" plugin --cflags)"
 warnings=(-Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Werror)
-"$CC" "${flags[@]}" "${warnings[@]}" "$PARTICLS_SOURCE/plugins/template/my_law.c" -o my_law.so || complain "the template does not compile"
-"$CC" "${flags[@]}" "${warnings[@]}" "$PARTICLS_SOURCE/plugins/cohesion/linear_cohesion.c" -o linear_cohesion.so || complain "linear_cohesion does not compile"
+for source in template/my_plugin cohesion/linear_cohesion torus/torus drag/stokes_drag temperature/granular_temperature; do
+    "$CC" "${flags[@]}" "${warnings[@]}" "$PARTICLS_SOURCE/plugins/$source.c" -o "${source#*/}.so" || complain "plugins/$source.c does not compile"
+    "$PARTICLS" info "${source#*/}.so" >info.txt || complain "the plugin of plugins/$source.c cannot be described"
+    grep -q '^### ' info.txt || complain "the plugin of plugins/$source.c brings nothing"
+done
 
 # A loose heap that falls on a floor and slides: all that a law can do.
 heap() { # <law> <further parameters>
     cat <<YAML
 particls: 1
-plugins: [./my_law.so, ./linear_cohesion.so]
+plugins: [./my_plugin.so, ./linear_cohesion.so]
 materials: {grain: {density: 2000}}
 shapes:
   ball: {sphere: {radius: 0.05}}
@@ -63,9 +66,107 @@ observe: [{particle: ball, quantities: [position], every: 0.1}]
 YAML
 done
 
-for scene in elastic my_law viscoelastic no_cohesion cohesion ceiling_2 ceiling_0.5; do
+# A slow pull F = rate t on a ball that adheres to a ceiling: it comes off when F = f0, and the pull has then done the work f0^2/(2 kn).
+cat >pull.yaml <<'YAML'
+particls: 1
+plugins: [./linear_cohesion.so]
+vars: {kn: 1.0e4, f0: 2, rate: 2}
+materials: {grain: {density: 1}}
+shapes:
+  ball: {sphere: {radius: 0.1}}
+  flat: {plane: {}}
+bodies:
+  - {name: ball, shape: ball, material: grain, position: [0, 0, "-0.1 + f0/kn"]}
+  - {name: ceiling, shape: flat, material: grain, position: [0, 0, 0], normal: [0, 0, -1]}
+contact:
+  - {between: all, law: linear_cohesion, kn: kn, cn: 2, cohesion: f0}
+forces: [{field: {force: [0, 0, "-rate*t"]}}]
+time: {end: 1.05, dt: 1.0e-4}
+observe: [{particle: ball, quantities: [position], every: 0.001}]
+YAML
+
+# A body falls through a fluid; another is carried along by a flow that swings; a third, of another entry, feels nothing.
+cat >drag.yaml <<'YAML'
+particls: 1
+plugins: [./stokes_drag.so]
+vars: {eta: 0.5}
+materials: {grain: {density: 2000}}
+shapes: {ball: {sphere: {radius: 0.01}}}
+bodies:
+  - {name: falling, shape: ball, material: grain, position: [0, 0, 0], angular_velocity: [0, 7, 0]}
+  - {name: carried, shape: ball, material: grain, position: [1, 0, 0]}
+  - {name: free, shape: ball, material: grain, position: [2, 0, 0], velocity: [0, 1, 0]}
+forces:
+  - {stokes_drag: {viscosity: eta, bodies: falling}}
+  - {stokes_drag: {viscosity: eta, flow: ["0.3*sin(20*t)", 0, 0], bodies: carried}}
+  - {field: {acceleration: [0, 0, -9.81], bodies: falling}}
+time: {end: 0.8, dt: 1.0e-4}
+observe:
+  - {particle: falling, quantities: [velocity, angular_velocity, mass], every: 0.02}
+  - {particle: carried, quantities: [velocity, mass], every: 0.02}
+  - {particle: free, quantities: [velocity], every: 0.02}
+YAML
+
+# Two clouds collide; centre of mass and temperature of one of them, of both, and in the plane. The template's force holds all of them, its observer counts.
+cat >cloud.yaml <<'YAML'
+particls: 1
+plugins: [./my_plugin.so, ./granular_temperature.so]
+materials: {grain: {density: 2000}}
+shapes: {ball: {sphere: {radius: 0.05}}}
+bodies:
+  - {name: left, shape: ball, material: grain, velocity: ["1 + 3*y", "z", "-x"],
+     place: {random: {count: 30, box: {lower: [-1, -0.4, -0.4], upper: [-0.1, 0.4, 0.4]}, radius: {uniform: [0.03, 0.06]}}}}
+  - {name: right, shape: ball, material: grain, velocity: ["-1", "x", "y"],
+     place: {random: {count: 30, box: {lower: [0.1, -0.4, -0.4], upper: [1, 0.4, 0.4]}, radius: {uniform: [0.03, 0.06]}}}}
+contact:
+  - {between: all, law: my_law, kn: 1.0e5, ks: 4.0e4, friction: 0.4}
+forces: [{my_force: {stiffness: 20, centre: [0.1, 0, 0]}}]
+time: {end: 0.3, dt: 5.0e-5}
+observe:
+  - {particle: left, quantities: [position, velocity, mass], every: 0.01}
+  - {particle: right, quantities: [position, velocity, mass], every: 0.01}
+  - {granular_temperature: {bodies: left}, every: 0.01}
+  - {granular_temperature: {}, every: 0.01, name: both}
+  - {my_observer: {faster: 1.5, bodies: right}, every: 0.01}
+  - {collection: all, name: sums, quantities: [energy], every: 0.01}
+YAML
+cat >plane.yaml <<'YAML'
+particls: 1
+dimension: 2
+plugins: [./my_plugin.so, ./granular_temperature.so]
+materials: {grain: {density: 2000}}
+shapes: {ball: {sphere: {radius: 0.05}}}
+bodies:
+  - {name: a, shape: ball, material: grain, position: [0, 0], velocity: [1, 0]}
+  - {name: b, shape: ball, material: grain, scale: 2, position: [1, 0], velocity: [-2, 3]}
+forces: [{my_force: {stiffness: 20, bodies: a}}]
+time: {end: 0.5, dt: 1.0e-4}
+observe:
+  - {granular_temperature: {}, every: 0.1}
+  - {particle: a, quantities: [position], every: 0.1}
+YAML
+
+# A run that is stopped in the middle and resumed: rows, the summary and what observers remember are those of a run that was not.
+"$PARTICLS" run cloud.yaml -o halves --until 0.146 --quiet --threads 1 && "$PARTICLS" resume halves --until 0.3 --quiet --threads 1 ||
+    complain "the cloud cannot be resumed"
+
+for scene in pull drag cloud plane elastic my_law viscoelastic no_cohesion cohesion ceiling_2 ceiling_0.5; do
     "$PARTICLS" run $scene.yaml -o $scene --quiet --threads 1 || complain "$scene does not run"
 done
+
+for series in granular_temperature both my_observer sums left; do
+    cmp -s cloud/series/$series.csv halves/series/$series.csv || complain "series $series differs after a run was resumed"
+done
+for key in observers state_hash; do
+    sed -n "/\"$key\"/,\$p" cloud/summary.json >whole.txt
+    sed -n "/\"$key\"/,\$p" halves/summary.json >halves.txt
+    cmp -s whole.txt halves.txt || complain "the summary's $key differ after a run was resumed"
+done
+
+# The scene in force is the same scene.
+"$PARTICLS" run cloud/scene.used.yaml -o again --quiet --threads 2 || complain "the used scene of the cloud does not run"
+cmp -s cloud/series/both.csv again/series/both.csv || complain "the used scene of the cloud gives another series"
+cmp -s cloud/scene.used.yaml again/scene.used.yaml || complain "the used scene of the cloud is not its own used scene"
 
 # A mistyped parameter of a plugin's law gets the same help as one of a built-in law.
 sed 's/friction/frictoin/' my_law.yaml >mistyped.yaml
@@ -101,6 +202,90 @@ overlap = 0.1 + held[-1][3]
 assert abs(overlap - weight / 2e4) < 1e-6 * 0.1, (overlap, weight / 2e4)
 _, fallen = table("ceiling_0.5/series/ball.csv")
 assert fallen[-1][3] < -4, fallen[-1]
+
+# Pull-off: the overlap is (f0 - F)/kn until F = f0.
+_, pull = table("pull/series/ball.csv")
+kn, f0, rate = 1e4, 2.0, 2.0
+off = next(row[0] for row in pull if row[3] < -0.1)
+assert abs(rate * off - f0) < 2e-3 * f0, (rate * off, f0)
+work = sum(rate * (b[0] + a[0]) / 2 * (a[3] - b[3]) for a, b in zip(pull, pull[1:]) if b[0] < off)
+assert abs(work - f0**2 / (2 * kn)) < 2e-3 * f0**2 / (2 * kn), (work, f0**2 / (2 * kn))
+
+# Stokes: v = -m g/c (1 - exp(-t/tau)), c = 6 pi eta r, tau = m/c; the spin decays with 8 pi eta r^3 / (2/5 m r^2).
+eta, r, g = 0.5, 0.01, 9.81
+m = 2000 * 4 / 3 * math.pi * r**3
+c = 6 * math.pi * eta * r
+tau = m / c
+names, falling = table("drag/series/falling.csv")
+column = {name.split(" ")[0]: k for k, name in enumerate(names)}
+for row in falling:
+    t = row[0]
+    v = -m * g / c * (1 - math.exp(-t / tau))
+    assert abs(row[column["velocity_z"]] - v) < 1e-5 * m * g / c, (t, row, v)
+    w = 7 * math.exp(-8 * math.pi * eta * r**3 / (0.4 * m * r * r) * t)
+    assert abs(row[column["angular_velocity_y"]] - w) < 1e-3 * 7, (t, row, w)
+end = falling[-1][column["velocity_z"]]
+assert abs(end / (-m * g / (6 * math.pi * eta * r)) - 1) < 1e-6, end
+
+# v' = (u0 sin(f t) - v)/tau from rest: v = u0 (sin(f t) - f tau cos(f t) + f tau exp(-t/tau)) / (1 + f^2 tau^2)
+_, carried = table("drag/series/carried.csv")
+u0, f = 0.3, 20.0
+for row in carried:
+    t = row[0]
+    v = u0 * (math.sin(f * t) - f * tau * math.cos(f * t) + f * tau * math.exp(-t / tau)) / (1 + (f * tau)**2)
+    assert abs(row[1] - v) < 1e-5 * u0, (t, row[1], v)
+_, free = table("drag/series/free.csv")
+assert all(row[1:4] == [0, 1, 0] for row in free), free[-1]
+
+# The same from the series of single particles.
+def clouds(*entries):
+    rows = []
+    for entry in entries:
+        names, table_of = table(f"cloud/series/{entry}.csv")
+        rows.append([[line[k:k + 7] for k in range(1, len(line), 7)] for line in table_of])
+        assert names[7].endswith("mass [kg]"), names[:9]
+    return [sum(at, []) for at in zip(*rows)]
+
+def temperature(bodies):
+    mass = sum(b[6] for b in bodies)
+    centre = [sum(b[6] * b[a] for b in bodies) / mass for a in range(3)]
+    mean = [sum(b[6] * b[3 + a] for b in bodies) / mass for a in range(3)]
+    return centre + mean + [sum(b[6] * (b[3 + a] - mean[a])**2 for b in bodies for a in range(3)) / (3 * mass)]
+
+for name, bodies in (("granular_temperature", clouds("left")), ("both", clouds("left", "right"))):
+    names, rows = table(f"cloud/series/{name}.csv")
+    assert names == ["time [s]", "centre_x [m]", "centre_y [m]", "centre_z [m]", "velocity_x [m/s]", "velocity_y [m/s]",
+                     "velocity_z [m/s]", "temperature [m^2/s^2]", "temperature_largest [m^2/s^2]"], names
+    assert len(rows) == len(bodies) == 31
+    largest = 0
+    for row, now in zip(rows, bodies):
+        known = temperature(now)
+        largest = max(largest, known[-1])
+        for value, wanted in zip(row[1:], known + [largest]):
+            assert abs(value - wanted) < 1e-12 * max(1, abs(wanted)), (name, row[0], value, wanted)
+
+names, rows = table("cloud/series/my_observer.csv")
+largest = 0
+for row, now in zip(rows, clouds("right")):
+    speeds = [math.hypot(*b[3:6]) for b in now]
+    fast = [s for s in speeds if s > 1.5]
+    largest = max([largest] + fast)
+    assert row[1] == len(fast) and abs(row[2] - sum(fast) / max(1, len(fast))) < 1e-12 and abs(row[3] - largest) < 1e-12, (row, len(fast))
+
+# Springs to a point have a potential: with contacts that keep energy the sum of all energies stays.
+names, rows = table("cloud/series/sums.csv")
+total = names.index("energy_total [J]")
+assert max(abs(row[total] - rows[0][total]) for row in rows) < 1e-4 * rows[0][total], [row[total] for row in rows]
+
+# In the plane: no columns along z, D = 2. Body a swings about the origin: x = sin(omega t)/omega, omega^2 = k/m.
+names, rows = table("plane/series/granular_temperature.csv")
+assert [name.split(" ")[0] for name in names] == ["time", "centre_x", "centre_y", "velocity_x", "velocity_y", "temperature", "temperature_largest"]
+# masses 1 : 4, velocities (1, 0) and (-2, 3): V = (-7/5, 12/5), T = (1 |(12/5, -12/5)|^2 + 4 |(-3/5, 3/5)|^2) / (2 * 5)
+assert abs(rows[0][5] - (2 * 2.4**2 + 4 * 2 * 0.6**2) / 10) < 1e-12, rows[0]
+omega = math.sqrt(20 / (2000 * math.pi * 0.05**2))
+_, swings = table("plane/series/a.csv")
+for row in swings:
+    assert abs(row[1] - math.sin(omega * row[0]) / omega) < 1e-7, row
 PYTHON
 
 # The C pieces of docs/extending.md: those that begin with a file name are whole programs or plugins.
@@ -108,18 +293,21 @@ awk '/^```c$/ {inside = 1; next} /^```$/ {inside = 0; file = ""} inside && /^\/\
     "$PARTICLS_SOURCE/docs/extending.md"
 sanitize=()
 if [ -n "${PARTICLS_SANITIZE:-}" ]; then sanitize=("-fsanitize=$PARTICLS_SANITIZE"); fi
-for source in square.c drop.c observed.c; do
+for source in square.c wind.c fastest.c drop.c observed.c; do
     if [ ! -s $source ]; then
         complain "docs/extending.md has no $source"
-    elif [ $source = square.c ]; then
-        "$CC" "${flags[@]}" -Wall -Wextra -Werror $source -o square.so || complain "$source of docs/extending.md does not compile"
+    elif grep -q particls_plugin_api $source; then
+        "$CC" "${flags[@]}" -Wall -Wextra -Werror $source -o "${source%.c}.so" || complain "$source of docs/extending.md does not compile"
     else
         "$CC" -std=gnu17 -Wall -Wextra -Werror "${sanitize[@]}" -I"$PARTICLS_SOURCE/include" $source -o "${source%.c}" -L"$PARTICLS_BUILD/lib" -lparticls -lm \
             "-Wl,-rpath,$PARTICLS_BUILD/lib" || complain "$source of docs/extending.md does not compile"
     fi
 done
-sed 's/law: my_law/law: square/; s/kn: 1.0e4, ks: 4000, friction: 0.4/kn: 1.0e6/; s/^plugins: .*/plugins: [.\/square.so]/' my_law.yaml >scene.yaml
-"$PARTICLS" run scene.yaml -o square --quiet --threads 1 || complain "the law of docs/extending.md does not run"
+sed 's/law: my_law/law: square/; s/kn: 1.0e4, ks: 4000, friction: 0.4/kn: 1.0e6/; s/^plugins: .*/plugins: [.\/square.so, .\/wind.so, .\/fastest.so]/
+    s/^forces: .*/forces: [{gravity: [0, 0, -9.81]}, {wind: {speed: "3*(1 - exp(-t))", bodies: heap}}]/' my_law.yaml >scene.yaml
+echo '  - {fastest: {bodies: heap}, every: 0.1}' >>scene.yaml
+"$PARTICLS" run scene.yaml -o square --quiet --threads 1 || complain "the plugins of docs/extending.md do not run"
+[ "$(wc -l <square/series/fastest.csv)" -eq 6 ] || complain "the observer of docs/extending.md has not written a row per look"
 fallen=$(./drop) || complain "drop of docs/extending.md fails"
 grep -q "^t = 1 s" <<<"$fallen" || complain "drop of docs/extending.md prints $fallen"
 ./observed scene.yaml out >observed.txt || complain "observed of docs/extending.md fails"

@@ -130,6 +130,7 @@ static void every_key_is_in_the_schema_and_on_the_page(void **state)
         {
             snprintf(part, sizeof part, "| `%s` | ", keys[j].name);
             assert_non_null(strstr(at, part));
+            if (keys[j].type == PLS_KEY_PLUGIN) continue; // any name
             snprintf(part, sizeof part, "\"%s\": {\"description\": ", keys[j].name);
             assert_non_null(strstr(json, part));
         }

@@ -1,7 +1,7 @@
 // test_golden.c -- wrong scenes, one class of mistake each, and the exact message the user gets.
 //
 // golden/NNN-name.yaml is a wrong scene, golden/NNN-name.expected its message. A first line "# --set path=value" is an override. The
-// folder's own path is written $GOLDEN. UPDATE_GOLDEN=1 writes the files anew; read the difference before keeping it.
+// folder's own path is written $GOLDEN, that of the compiled plugins $PLUGINS. UPDATE_GOLDEN=1 writes the files anew; read the difference before keeping it.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -34,30 +34,40 @@ static void read_text(const char *path, char text[TEXT_SIZE])
     fclose(file);
 }
 
-/// Text with the golden folder's path replaced.
-static void relocate(const char *message, const char *folder, char out[TEXT_SIZE])
+/// `text` with `from` replaced by `to`.
+static void replace(const char *text, const char *from, const char *to, char out[TEXT_SIZE])
 {
-    size_t used = 0, size = strlen(folder);
-    for (const char *c = message; *c && used + 16 < TEXT_SIZE;)
+    size_t used = 0, size = strlen(from);
+    for (const char *c = text; *c && used + strlen(to) + 2 < TEXT_SIZE;)
     {
-        if (strncmp(c, folder, size) == 0)
+        if (strncmp(c, from, size) == 0)
         {
-            used += (size_t)snprintf(out + used, TEXT_SIZE - used, "$GOLDEN");
+            used += (size_t)snprintf(out + used, TEXT_SIZE - used, "%s", to);
             c += size;
         }
         else
             out[used++] = *c++;
     }
-    snprintf(out + used, TEXT_SIZE - used, "\n");
+    out[used] = '\0';
+}
+
+/// Text with the folders' paths replaced.
+static void relocate(const char *message, const char *folder, char out[TEXT_SIZE])
+{
+    char without[TEXT_SIZE];
+    replace(message, folder, "$GOLDEN", without);
+    replace(without, PLS_PLUGIN_DIR, "$PLUGINS", out);
+    strcat(out, "\n");
 }
 
 /// Load and, if that goes well, build and prepare: the status of what failed.
 static pls_status try_scene(const char *path)
 {
-    char text[TEXT_SIZE], override[256];
+    char text[TEXT_SIZE], written[256], override[TEXT_SIZE];
     read_text(path, text);
     const char *set = override;
-    size_t sets = sscanf(text, "# --set %255[^\n]", override) == 1;
+    size_t sets = sscanf(text, "# --set %255[^\n]", written) == 1;
+    if (sets) replace(written, "$PLUGINS", PLS_PLUGIN_DIR, override);
     pls_scene *scene;
     pls_world *world = NULL;
     pls_status status = pls_scene_load(path, &set, sets, &scene);

@@ -58,7 +58,11 @@ static void the_step_that_makes_a_velocity_not_a_number_is_refused(void **state)
     calls = 0;
     pls_material_id grain;
     pls_world *world = row_of_spheres(1, 1e-3, &grain);
-    assert_int_equal(pls_world_add_force(world, &sour, &calls), PLS_OK);
+    pls_force_def force = pls_default_force_def();
+    force.ops = &sour;
+    force.context = &calls;
+    pls_force_id id;
+    assert_int_equal(pls_world_add_force(world, &force, &id), PLS_OK);
     assert_int_equal(pls_step(world), PLS_OK);
     assert_int_equal(pls_step(world), PLS_NOT_A_NUMBER);
     assert_non_null(strstr(pls_last_message(), "nan"));

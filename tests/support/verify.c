@@ -166,16 +166,23 @@ static pls_status evaluate_field(void *context, const pls_force_batch *b)
     return PLS_OK;
 }
 
-static double potential_of_field(void *context, double time, pls_vec3 position, double mass)
+static double potential_of_field(void *context, const pls_force_body *body)
 {
-    (void)time;
-    return ((const verify_field *)context)->potential(position, mass);
+    return ((const verify_field *)context)->potential(body->position, body->mass);
 }
 
 void verify_add_field(pls_world *world, const verify_field *field)
 {
-    static const pls_force_ops plain = {PLS_API_VERSION, "test field", "a field of force of a test", evaluate_field, NULL, NULL};
-    static const pls_force_ops conservative = {PLS_API_VERSION, "test field",       "a field of force of a test",
-                                               evaluate_field,  potential_of_field, NULL};
-    MUST(pls_world_add_force(world, field->potential ? &conservative : &plain, (void *)(uintptr_t)field));
+    static const pls_force_ops plain = {
+        .api_version = PLS_API_VERSION, .name = "test field", .meaning = "a field of force of a test", .evaluate = evaluate_field};
+    static const pls_force_ops conservative = {.api_version = PLS_API_VERSION,
+                                               .name = "test field",
+                                               .meaning = "a field of force of a test",
+                                               .evaluate = evaluate_field,
+                                               .potential = potential_of_field};
+    pls_force_def def = pls_default_force_def();
+    def.ops = field->potential ? &conservative : &plain;
+    def.context = (void *)(uintptr_t)field;
+    pls_force_id id;
+    MUST(pls_world_add_force(world, &def, &id));
 }
