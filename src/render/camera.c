@@ -81,37 +81,99 @@ double pls_render_view_depth(const pls_render_view *view, pls_vec3 centre, doubl
 
 static double radius_of(const pls_render_item *item) { return item->radius > 0.0 ? item->radius : item->shape->radius * item->scale; }
 
-/// The middle of the box around all bounded items, and how far they reach from it.
-static double reach_of(const pls_render_item *items, size_t count, pls_vec3 *middle)
+// ---- framing ----------------------------------------------------------------------------------------------------------------------------
+//
+// A ball of radius r at (x, y, z) along right, up and forward lies left of the plane through the eye, a way D behind the origin, at the tangent T to the right if
+// z + D >= x / T + r sqrt(1 + 1/T^2): a lower bound of D, linear in the eye's own place. The largest bounds of both sides then give the eye's place between them. In an
+// orthographic picture the bounds are the silhouettes' ends themselves.
+
+static const double border = 1.05; ///< the picture is so much larger than what it must show
+
+/// Tangents of the parts of the picture that bodies may fill; of half its height in an orthographic one.
+typedef struct sides
 {
-    pls_vec3 lower = pls_vec(INFINITY, INFINITY, INFINITY), upper = pls_vec(-INFINITY, -INFINITY, -INFINITY);
+    double left, right, high;
+} sides;
+
+static sides sides_of(const pls_render_framing *f)
+{
+    double high = f->field_of_view > 0.0 ? tan(0.5 * f->field_of_view) : 1.0;
+    return (sides){high * f->aspect * f->left_part, high * f->aspect * f->right_part, high * f->height_part};
+}
+
+pls_render_framing pls_render_framing_start(pls_vec3 direction, pls_vec3 up, double field_of_view, const pls_render_options *options)
+{
+    pls_render_framing f = {
+        .field_of_view = field_of_view, .left_part = 1.0 / border, .right_part = 1.0 / border, .height_part = 1.0 / border};
+    f.forward = pls_unit(direction);
+    f.right = pls_unit(pls_cross(f.forward, up));
+    f.up = pls_cross(f.right, f.forward);
+    f.aspect = (double)options->width / options->height;
+    if (options->bar) f.right_part = fmax(1.0 - 2.0 * pls_render_bar_strip(options) / options->width, 0.1) / border;
+    return f;
+}
+
+static double bound(double across, double along, double radius, double tangent, bool orthographic)
+{
+    return orthographic ? across + radius : across / tangent + radius * sqrt(1.0 + 1.0 / (tangent * tangent)) - along;
+}
+
+void pls_render_framing_add(pls_render_framing *f, const pls_render_item *items, size_t count)
+{
+    sides t = sides_of(f);
+    bool flat = f->field_of_view == 0.0;
     for (size_t k = 0; k < count; ++k)
     {
-        if (items[k].shape->ops->unbounded) continue;
-        pls_vec3 p = items[k].position;
-        double r = radius_of(&items[k]);
-        lower = pls_vec(fmin(lower.x, p.x - r), fmin(lower.y, p.y - r), fmin(lower.z, p.z - r));
-        upper = pls_vec(fmax(upper.x, p.x + r), fmax(upper.y, p.y + r), fmax(upper.z, p.z + r));
+        if (items[k].shape->ops->unbounded || !(items[k].opacity > 0.0f)) continue;
+        double x = pls_dot(items[k].position, f->right), y = pls_dot(items[k].position, f->up), z = pls_dot(items[k].position, f->forward);
+        double r = radius_of(&items[k]), right = bound(x, z, r, t.right, flat), left = bound(-x, z, r, t.left, flat);
+        double high = bound(y, z, r, t.high, flat), low = bound(-y, z, r, t.high, flat);
+        f->right_end = f->any ? fmax(f->right_end, right) : right;
+        f->left_end = f->any ? fmax(f->left_end, left) : left;
+        f->high_end = f->any ? fmax(f->high_end, high) : high;
+        f->low_end = f->any ? fmax(f->low_end, low) : low;
+        f->near_end = f->any ? fmax(f->near_end, r - z) : r - z;
+        f->any = true;
     }
-    *middle = pls_vec(0.0, 0.0, 0.0);
-    if (!(lower.x <= upper.x)) return 1.0;
-    *middle = pls_scale(pls_add(lower, upper), 0.5);
-    double reach = 0.0;
-    for (size_t k = 0; k < count; ++k)
+}
+
+static pls_render_camera orthographic_camera(const pls_render_framing *f)
+{
+    sides t = sides_of(f);
+    double wide = f->left_end + f->right_end, tall = f->high_end + f->low_end, half = fmax(wide / (t.left + t.right), 0.5 * tall / t.high);
+    // The middle of the bodies stands in the middle of what they may fill.
+    double x = 0.5 * (f->right_end - f->left_end) - 0.5 * (t.right - t.left) * half, y = 0.5 * (f->high_end - f->low_end);
+    pls_render_camera camera = {.up = f->up, .height = 2.0 * half};
+    pls_vec3 across = pls_add(pls_scale(f->right, x), pls_scale(f->up, y));
+    camera.eye = pls_sub(across, pls_scale(f->forward, f->near_end + half));
+    camera.target = pls_add(camera.eye, pls_scale(f->forward, half));
+    return camera;
+}
+
+pls_render_camera pls_render_framing_end(const pls_render_framing *framing)
+{
+    pls_render_framing f = *framing;
+    if (!f.any) // nothing to show: a metre about the origin
     {
-        if (!items[k].shape->ops->unbounded) reach = fmax(reach, pls_length(pls_sub(items[k].position, *middle)) + radius_of(&items[k]));
+        sides t = sides_of(&f);
+        f.right_end = bound(0.0, 0.0, 1.0, t.right, f.field_of_view == 0.0);
+        f.left_end = f.right_end;
+        f.high_end = f.low_end = bound(0.0, 0.0, 1.0, t.high, f.field_of_view == 0.0);
     }
-    return reach;
+    if (f.field_of_view == 0.0) return orthographic_camera(&f);
+    sides t = sides_of(&f);
+    double x = (f.right_end - f.left_end) / (1.0 / t.right + 1.0 / t.left), y = 0.5 * (f.high_end - f.low_end) * t.high;
+    double away = fmax(f.right_end - x / t.right, f.high_end - y / t.high);
+    pls_render_camera camera = {.up = f.up, .field_of_view = f.field_of_view};
+    camera.eye = pls_sub(pls_add(pls_scale(f.right, x), pls_scale(f.up, y)), pls_scale(f.forward, away));
+    camera.target = pls_add(camera.eye, pls_scale(f.forward, fmax(fabs(away), 1e-3)));
+    return camera;
 }
 
 pls_render_camera pls_render_fit(const pls_render_item *items, size_t count, pls_vec3 direction, pls_vec3 up, double field_of_view,
-                                 double aspect)
+                                 const pls_render_options *options)
 {
-    const double border = 1.05;
-    pls_render_camera camera = {.up = up, .field_of_view = field_of_view};
-    double reach = border * reach_of(items, count, &camera.target), narrow = fmin(aspect, 1.0);
-    double half = field_of_view > 0.0 ? atan(narrow * tan(0.5 * field_of_view)) : 0.0;
-    camera.height = 2.0 * reach / narrow;
-    camera.eye = pls_sub(camera.target, pls_scale(pls_unit(direction), half > 0.0 ? reach / sin(half) : 2.0 * reach));
-    return camera;
+    pls_render_framing framing = pls_render_framing_start(direction, up, field_of_view, options);
+    pls_render_framing_add(&framing, items, count);
+    return pls_render_framing_end(&framing);
 }

@@ -67,6 +67,7 @@ pls_render_options pls_render_defaults(void)
                                 .height = 720,
                                 .high = 1.0,
                                 .background = {255, 255, 255, 255},
+                                .plain = {160, 160, 160},
                                 .light = {0.4, -0.5, 1.0},
                                 .softness = 0.08,
                                 .ambient = 0.4,
@@ -121,7 +122,10 @@ static void set_body(body *b, const pls_render_item *item, const pls_render_opti
     *b = (body){.centre = item->position, .item = item, .opacity = fminf(fmaxf(item->opacity, 0.0f), 1.0f)};
     b->radius = item->radius > 0.0 ? item->radius : item->shape->radius * item->scale;
     uint8_t rgb[3];
-    pls_render_colour(options->colours, item->value, options->low, options->high, rgb);
+    if (isnan(item->value))
+        memcpy(rgb, options->plain, sizeof rgb);
+    else
+        pls_render_colour(options->colours, item->value, options->low, options->high, rgb);
     if (item->shape->ops->unbounded) memcpy(rgb, wall, sizeof rgb);
     for (int c = 0; c < 3; ++c) b->albedo[c] = (float)pls_render_linear_from_srgb(rgb[c]);
     b->kind = item->shape->dimension == 2 ? FLAT : item->shape->ops->unbounded ? PLANE : is_ball(item->shape) ? BALL : TRACED;
@@ -176,14 +180,16 @@ static pls_status make_tiles(scene *s, pls_render_extent *extent)
 static void measure(scene *s)
 {
     pls_vec3 lower = pls_vec(INFINITY, INFINITY, INFINITY), upper = pls_scale(lower, -1.0);
+    bool any = false;
     for (size_t k = 0; k < s->bounded; ++k)
     {
+        if (s->bodies[k].opacity <= 0.0f) continue;
+        any = true;
         pls_vec3 p = s->bodies[k].centre;
         double r = s->bodies[k].radius;
         lower = pls_vec(fmin(lower.x, p.x - r), fmin(lower.y, p.y - r), fmin(lower.z, p.z - r));
         upper = pls_vec(fmax(upper.x, p.x + r), fmax(upper.y, p.y + r), fmax(upper.z, p.z + r));
     }
-    bool any = s->bounded > 0;
     s->middle = any ? pls_scale(pls_add(lower, upper), 0.5) : pls_vec(0.0, 0.0, 0.0);
     s->reach = any ? 0.5 * pls_length(pls_sub(upper, lower)) : 1.0;
     double raw = 0.2 * s->reach, power = pow(10.0, floor(log10(raw)));
@@ -286,10 +292,12 @@ static bool trace_shape(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double f
     return false;
 }
 
-static bool hit_traced(const body *b, const pls_render_ray *ray, double *t)
+/// From `first` on.
+static bool hit_traced(const body *b, const pls_render_ray *ray, double first, double *t)
 {
     double from, to, scale = b->item->scale;
-    if (!within(ray, b->centre, b->radius * (1.0 + 1e-9), &from, &to) || to <= 0.0) return false;
+    if (!within(ray, b->centre, b->radius * (1.0 + 1e-9), &from, &to) || to <= fmax(first, 0.0)) return false;
+    from = fmax(from, first);
     pls_vec3 start = pls_add(ray->origin, pls_scale(ray->direction, from));
     if (!trace_shape(b->item->shape, to_shape(b->item, start), turn_to_shape(b->item, ray->direction), 0.0, (to - from) / scale, t))
         return false;
@@ -306,24 +314,54 @@ static bool hit_flat(const body *b, const pls_render_ray *ray, double *t)
     return pls_shape_sdf(b->item->shape, X) <= 0.0;
 }
 
-/// Only from its front: walls between the eye and what they hold are not drawn.
-static bool hit_plane(const body *b, const pls_render_ray *ray, double *t)
+/// Only from its front: walls between the eye and what they hold are not drawn. Planes end where they enter one another: those of a box are its sides.
+static bool hit_plane(const scene *s, const body *b, const pls_render_ray *ray, double *t)
 {
     double towards = pls_dot(b->normal, ray->direction);
     if (towards >= 0.0) return false;
     *t = pls_dot(b->normal, pls_sub(b->centre, ray->origin)) / towards;
+    pls_vec3 p = pls_add(ray->origin, pls_scale(ray->direction, *t));
+    for (size_t k = s->bounded; k < s->count; ++k)
+    {
+        const body *other = &s->bodies[k];
+        if (other != b && other->kind == PLANE && other->opacity > 0.0f &&
+            pls_dot(other->normal, pls_sub(p, other->centre)) < -1e-9 * s->reach)
+            return false;
+    }
     return true;
 }
 
-static bool hit_body(const body *b, const pls_render_ray *ray, double *t)
+/// The part of a ray that lies on the side of the cut that is kept.
+static void keep_side(const scene *s, const pls_render_ray *ray, double *from, double *to)
+{
+    *from = -INFINITY;
+    *to = INFINITY;
+    if (!s->options->cut) return;
+    double towards = pls_dot(s->options->cut_normal, ray->direction);
+    double left = s->options->cut_distance - pls_dot(s->options->cut_normal, ray->origin);
+    if (towards > 0.0) *to = left / towards;
+    if (towards < 0.0) *from = left / towards;
+    if (towards == 0.0 && left < 0.0) *to = -INFINITY;
+}
+
+static bool hit_ball(const body *b, const pls_render_ray *ray, double first, double *t)
 {
     double to;
+    if (!within(ray, b->centre, b->radius, t, &to) || to < first) return false;
+    *t = fmax(*t, first);
+    return true;
+}
+
+static bool hit_body(const scene *s, const body *b, const pls_render_ray *ray, double *t)
+{
+    double first, last;
+    keep_side(s, ray, &first, &last);
     switch (b->kind)
     {
-        case BALL: return within(ray, b->centre, b->radius, t, &to);
-        case PLANE: return hit_plane(b, ray, t);
-        case FLAT: return hit_flat(b, ray, t);
-        default: return hit_traced(b, ray, t);
+        case BALL: return hit_ball(b, ray, first, t) && *t <= last;
+        case PLANE: return hit_plane(s, b, ray, t);
+        case FLAT: return hit_flat(b, ray, t) && *t >= first && *t <= last;
+        default: return hit_traced(b, ray, first, t) && *t <= last;
     }
 }
 
@@ -332,7 +370,7 @@ static bool before(hit a, hit b) { return a.t < b.t || (a.t == b.t && a.body < b
 static void try_body(const scene *s, const pls_render_ray *ray, uint32_t k, hit after, hit *best)
 {
     hit found = {.body = k};
-    if (!hit_body(&s->bodies[k], ray, &found.t)) return;
+    if (!hit_body(s, &s->bodies[k], ray, &found.t)) return;
     if (!s->view.orthographic && found.t <= 0.0) return;
     if (before(after, found) && before(found, *best)) *best = found;
 }
@@ -397,12 +435,14 @@ static double lit(const scene *s, pls_vec3 p, uint32_t self)
     double x = (pls_dot(p, s->light_x) - s->corner_x) / s->side, y = (pls_dot(p, s->light_y) - s->corner_y) / s->side;
     if (!(x >= 0.0 && y >= 0.0 && x < s->columns.columns && y < s->columns.rows)) return 1.0;
     size_t cell = (size_t)y * (size_t)s->columns.columns + (size_t)x;
-    double height = pls_dot(p, s->light), pass = 1.0;
+    double height = pls_dot(p, s->light), pass = 1.0, first, last;
+    keep_side(s, &(pls_render_ray){p, s->light}, &first, &last);
     for (uint32_t n = s->columns.start[cell]; n < s->columns.start[cell + 1] && pass > 0.01; ++n)
     {
         uint32_t k = s->columns.body[n];
         const body *b = &s->bodies[k];
         if (pls_dot(b->centre, s->light) + b->radius <= height) break;
+        if (pls_dot(pls_sub(b->centre, p), s->light) > last) continue; // cut away, if not to its last bit
         if (k == self && (b->kind == BALL || b->item->shape->convex)) continue;
         double through = b->kind == BALL ? pass_ball(s, b, p) : pass_traced(s, b, p);
         pass *= 1.0 - (double)b->opacity * (1.0 - through);
@@ -419,6 +459,13 @@ static pls_vec3 bevel(const body *b, pls_vec3 p)
     double depth = -pls_shape_sdf(b->item->shape, X), slope = width > 0.0 ? 1.0 - smooth(depth / width) : 0.0;
     pls_vec3 g = turn_to_world(b->item, pls_shape_gradient(b->item->shape, X));
     return pls_unit(pls_add(pls_scale(g, slope), pls_vec(0.0, 0.0, 1.0)));
+}
+
+/// Whether a point that was met is on the face that the cut leaves.
+static bool on_cut(const scene *s, const body *b, pls_vec3 p)
+{
+    if (!s->options->cut || b->kind == PLANE || b->kind == FLAT) return false;
+    return fabs(pls_dot(s->options->cut_normal, p) - s->options->cut_distance) < 1e-7 * b->radius;
 }
 
 static pls_vec3 normal_at(const body *b, pls_vec3 p)
@@ -450,7 +497,7 @@ static double fade(const scene *s, const body *b, pls_vec3 p)
 static void shade(const scene *s, const pls_render_ray *ray, hit at, double weight, sample *out)
 {
     const body *b = &s->bodies[at.body];
-    pls_vec3 p = pls_add(ray->origin, pls_scale(ray->direction, at.t)), n = normal_at(b, p);
+    pls_vec3 p = pls_add(ray->origin, pls_scale(ray->direction, at.t)), n = on_cut(s, b, p) ? s->options->cut_normal : normal_at(b, p);
     double facing = pls_dot(n, s->light), ambient = s->options->ambient, direct = 0.0, gloss = 0.0;
     if (facing > 0.0)
     {
@@ -608,6 +655,9 @@ static pls_status check_options(const pls_render_options *o)
         return pls_fail(PLS_INVALID_ARGUMENT,
                         "the light of a picture has an ambient part of %g and a softness of %g: give 0 to 1 and 0 to 10", o->ambient,
                         o->softness);
+    if (o->cut && !(fabs(pls_length(o->cut_normal) - 1.0) < 1e-6 && isfinite(o->cut_distance)))
+        return pls_fail(PLS_INVALID_ARGUMENT, "a picture is cut by the plane (%g, %g, %g) . x = %g: give a unit vector and a distance",
+                        o->cut_normal.x, o->cut_normal.y, o->cut_normal.z, o->cut_distance);
     return PLS_OK;
 }
 
@@ -664,6 +714,7 @@ pls_status pls_render_image(const pls_render_item *items, size_t count, const pl
         picture->height = options->height;
         draw(&s, what, picture->rgba);
         if (options->bar) pls_render_bar(picture, options);
+        pls_render_caption(picture, options);
     }
     pls_release(&what);
     free_scene(&s);
