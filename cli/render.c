@@ -62,12 +62,12 @@ static void set_view(studio *s)
         render_look_from(a, (pls_vec3)RENDER_ISO);
 }
 
-/// Light over the left shoulder.
+/// Light from above the eye, a little to the left: three sides of a box then have three shades.
 static void set_light(studio *s)
 {
     pls_vec3 forward = pls_unit(pls_sub(s->camera.target, s->camera.eye)), right = pls_unit(pls_cross(forward, s->camera.up));
     pls_vec3 up = pls_cross(right, forward);
-    s->a->picture.light = pls_add(pls_scale(up, 0.9), pls_sub(pls_scale(right, -0.45), pls_scale(forward, 0.6)));
+    s->a->picture.light = pls_sub(pls_sub(pls_scale(up, 0.55), pls_scale(right, 0.15)), pls_scale(forward, 0.8));
 }
 
 /// What the bar says; its range follows from the values.

@@ -81,6 +81,22 @@ double pls_render_view_depth(const pls_render_view *view, pls_vec3 centre, doubl
 
 static double radius_of(const pls_render_item *item) { return item->radius > 0.0 ? item->radius : item->shape->radius * item->scale; }
 
+/// The middle of the box around all bounded, visible items, and half its diagonal; 0: there are none.
+static double reach_of(const pls_render_item *items, size_t count, pls_vec3 *middle)
+{
+    pls_vec3 lower = pls_vec(INFINITY, INFINITY, INFINITY), upper = pls_vec(-INFINITY, -INFINITY, -INFINITY);
+    for (size_t k = 0; k < count; ++k)
+    {
+        if (items[k].shape->ops->unbounded || !(items[k].opacity > 0.0f)) continue;
+        pls_vec3 p = items[k].position;
+        double r = radius_of(&items[k]);
+        lower = pls_vec(fmin(lower.x, p.x - r), fmin(lower.y, p.y - r), fmin(lower.z, p.z - r));
+        upper = pls_vec(fmax(upper.x, p.x + r), fmax(upper.y, p.y + r), fmax(upper.z, p.z + r));
+    }
+    *middle = pls_scale(pls_add(lower, upper), 0.5);
+    return lower.x <= upper.x ? 0.5 * pls_length(pls_sub(upper, lower)) : 0.0;
+}
+
 // ---- framing ----------------------------------------------------------------------------------------------------------------------------
 //
 // A ball of radius r at (x, y, z) along right, up and forward lies left of the plane through the eye, a way D behind the origin, at the tangent T to the right if
@@ -118,23 +134,77 @@ static double bound(double across, double along, double radius, double tangent, 
     return orthographic ? across + radius : across / tangent + radius * sqrt(1.0 + 1.0 / (tangent * tangent)) - along;
 }
 
+static void add_ball(pls_render_framing *f, const sides *t, pls_vec3 centre, double r)
+{
+    bool flat = f->field_of_view == 0.0;
+    double x = pls_dot(centre, f->right), y = pls_dot(centre, f->up), z = pls_dot(centre, f->forward);
+    double right = bound(x, z, r, t->right, flat), left = bound(-x, z, r, t->left, flat);
+    double high = bound(y, z, r, t->high, flat), low = bound(-y, z, r, t->high, flat);
+    f->right_end = f->any ? fmax(f->right_end, right) : right;
+    f->left_end = f->any ? fmax(f->left_end, left) : left;
+    f->high_end = f->any ? fmax(f->high_end, high) : high;
+    f->low_end = f->any ? fmax(f->low_end, low) : low;
+    f->near_end = f->any ? fmax(f->near_end, r - z) : r - z;
+    f->any = true;
+}
+
+enum { MOST_WALLS = 12 }; ///< of which corners are looked for
+
+typedef struct wall
+{
+    pls_vec3 normal, point;
+} wall;
+
+/// Where three planes meet, if that is a corner of the space before them all and not much further from `middle` than the bodies are.
+static void add_corner(pls_render_framing *f, const sides *t, const wall *walls, int count, const wall *const w[3], pls_vec3 middle,
+                       double reach)
+{
+    pls_vec3 bc = pls_cross(w[1]->normal, w[2]->normal), ca = pls_cross(w[2]->normal, w[0]->normal),
+             ab = pls_cross(w[0]->normal, w[1]->normal);
+    double det = pls_dot(w[0]->normal, bc);
+    if (fabs(det) < 1e-6) return;
+    pls_vec3 p = pls_add(pls_scale(bc, pls_dot(w[0]->normal, w[0]->point)),
+                         pls_add(pls_scale(ca, pls_dot(w[1]->normal, w[1]->point)), pls_scale(ab, pls_dot(w[2]->normal, w[2]->point))));
+    p = pls_scale(p, 1.0 / det);
+    if (pls_length(pls_sub(p, middle)) > 1.5 * reach) return;
+    for (int k = 0; k < count; ++k)
+    {
+        if (pls_dot(walls[k].normal, pls_sub(p, walls[k].point)) < -1e-6 * reach) return;
+    }
+    add_ball(f, t, p, 0.0);
+}
+
+static void add_corners(pls_render_framing *f, const sides *t, const pls_render_item *items, size_t count)
+{
+    wall walls[MOST_WALLS];
+    int n = 0;
+    for (size_t k = 0; k < count && n < MOST_WALLS; ++k)
+    {
+        if (items[k].shape->ops->unbounded && items[k].shape->dimension == 3 && items[k].opacity > 0.0f)
+        {
+            pls_render_plane_of(&items[k], &walls[n].normal, &walls[n].point);
+            ++n;
+        }
+    }
+    pls_vec3 middle;
+    double reach = n >= 3 ? reach_of(items, count, &middle) : 0.0;
+    for (int a = 0; a < n && reach > 0.0; ++a)
+    {
+        for (int b = 0; b < a; ++b)
+        {
+            for (int c = 0; c < b; ++c) add_corner(f, t, walls, n, (const wall *const[3]){&walls[a], &walls[b], &walls[c]}, middle, reach);
+        }
+    }
+}
+
 void pls_render_framing_add(pls_render_framing *f, const pls_render_item *items, size_t count)
 {
     sides t = sides_of(f);
-    bool flat = f->field_of_view == 0.0;
     for (size_t k = 0; k < count; ++k)
     {
-        if (items[k].shape->ops->unbounded || !(items[k].opacity > 0.0f)) continue;
-        double x = pls_dot(items[k].position, f->right), y = pls_dot(items[k].position, f->up), z = pls_dot(items[k].position, f->forward);
-        double r = radius_of(&items[k]), right = bound(x, z, r, t.right, flat), left = bound(-x, z, r, t.left, flat);
-        double high = bound(y, z, r, t.high, flat), low = bound(-y, z, r, t.high, flat);
-        f->right_end = f->any ? fmax(f->right_end, right) : right;
-        f->left_end = f->any ? fmax(f->left_end, left) : left;
-        f->high_end = f->any ? fmax(f->high_end, high) : high;
-        f->low_end = f->any ? fmax(f->low_end, low) : low;
-        f->near_end = f->any ? fmax(f->near_end, r - z) : r - z;
-        f->any = true;
+        if (!items[k].shape->ops->unbounded && items[k].opacity > 0.0f) add_ball(f, &t, items[k].position, radius_of(&items[k]));
     }
+    add_corners(f, &t, items, count);
 }
 
 static pls_render_camera orthographic_camera(const pls_render_framing *f)

@@ -88,13 +88,16 @@ typedef struct pls_render_framing
 
 /// Look along `direction`; in 2D (0, 0, -1), with `up` (0, 1, 0) and field_of_view 0. Of `options`, size and bar matter.
 pls_render_framing pls_render_framing_start(pls_vec3 direction, pls_vec3 up, double field_of_view, const pls_render_options *options);
-/// Bounded, visible items count.
+/// Bounded, visible items count, and the corners of a box of planes.
 void pls_render_framing_add(pls_render_framing *framing, const pls_render_item *items, size_t count);
 /// The nearest camera that shows all.
 pls_render_camera pls_render_framing_end(const pls_render_framing *framing);
 /// All three for one picture.
 pls_render_camera pls_render_fit(const pls_render_item *items, size_t count, pls_vec3 direction, pls_vec3 up, double field_of_view,
                                  const pls_render_options *options);
+
+/// The outward normal of an unbounded item, and a point on it [m].
+void pls_render_plane_of(const pls_render_item *item, pls_vec3 *normal, pls_vec3 *point);
 
 // ---- files ----------------------------------------------------------------------------------------------------------------------------
 

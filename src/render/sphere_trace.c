@@ -100,12 +100,11 @@ static bool is_ball(const pls_shape *shape)
 }
 
 /// The half-space phi <= 0 of an SDF that is linear.
-static void set_plane(body *b)
+void pls_render_plane_of(const pls_render_item *item, pls_vec3 *normal, pls_vec3 *point)
 {
-    const pls_render_item *item = b->item;
     pls_vec3 X = to_shape(item, item->position);
-    b->normal = turn_to_world(item, pls_unit(pls_shape_gradient(item->shape, X)));
-    b->centre = pls_sub(item->position, pls_scale(b->normal, item->scale * pls_shape_sdf(item->shape, X)));
+    *normal = turn_to_world(item, pls_unit(pls_shape_gradient(item->shape, X)));
+    *point = pls_sub(item->position, pls_scale(*normal, item->scale * pls_shape_sdf(item->shape, X)));
 }
 
 static void set_ball(body *b)
@@ -129,7 +128,7 @@ static void set_body(body *b, const pls_render_item *item, const pls_render_opti
     if (item->shape->ops->unbounded) memcpy(rgb, wall, sizeof rgb);
     for (int c = 0; c < 3; ++c) b->albedo[c] = (float)pls_render_linear_from_srgb(rgb[c]);
     b->kind = item->shape->dimension == 2 ? FLAT : item->shape->ops->unbounded ? PLANE : is_ball(item->shape) ? BALL : TRACED;
-    if (b->kind == PLANE) set_plane(b);
+    if (b->kind == PLANE) pls_render_plane_of(item, &b->normal, &b->centre);
     if (b->kind == BALL) set_ball(b);
 }
 
