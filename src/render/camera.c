@@ -134,18 +134,51 @@ static double bound(double across, double along, double radius, double tangent, 
     return orthographic ? across + radius : across / tangent + radius * sqrt(1.0 + 1.0 / (tangent * tangent)) - along;
 }
 
-static void add_ball(pls_render_framing *f, const sides *t, pls_vec3 centre, double r)
+/// How far to the right, left, top, bottom and back something reaches.
+typedef struct ends
+{
+    double value[5];
+} ends;
+
+static ends ends_of_ball(const pls_render_framing *f, const sides *t, pls_vec3 centre, double r)
 {
     bool flat = f->field_of_view == 0.0;
     double x = pls_dot(centre, f->right), y = pls_dot(centre, f->up), z = pls_dot(centre, f->forward);
-    double right = bound(x, z, r, t->right, flat), left = bound(-x, z, r, t->left, flat);
-    double high = bound(y, z, r, t->high, flat), low = bound(-y, z, r, t->high, flat);
-    f->right_end = f->any ? fmax(f->right_end, right) : right;
-    f->left_end = f->any ? fmax(f->left_end, left) : left;
-    f->high_end = f->any ? fmax(f->high_end, high) : high;
-    f->low_end = f->any ? fmax(f->low_end, low) : low;
-    f->near_end = f->any ? fmax(f->near_end, r - z) : r - z;
+    return (ends){{bound(x, z, r, t->right, flat), bound(-x, z, r, t->left, flat), bound(y, z, r, t->high, flat),
+                   bound(-y, z, r, t->high, flat), r - z}};
+}
+
+static void widen(pls_render_framing *f, const ends *e)
+{
+    double *const to[5] = {&f->right_end, &f->left_end, &f->high_end, &f->low_end, &f->near_end};
+    for (int k = 0; k < 5; ++k) *to[k] = f->any ? fmax(*to[k], e->value[k]) : e->value[k];
     f->any = true;
+}
+
+/// The shape's box, corner by corner. Both it and the bounding sphere hold the body, so the lesser of their ends does.
+static void narrow_to_box(const pls_render_framing *f, const sides *t, const pls_render_item *item, ends *e)
+{
+    const pls_shape *shape = item->shape;
+    pls_quat turn = pls_quat_multiply(item->orientation, pls_quat_conjugate(shape->principal));
+    ends box = {{-INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY}};
+    for (int k = 0; k < 8; ++k)
+    {
+        pls_vec3 X = pls_vec(k & 1 ? shape->upper.x : shape->lower.x, k & 2 ? shape->upper.y : shape->lower.y,
+                             shape->dimension == 2 ? 0.0
+                             : k & 4               ? shape->upper.z
+                                                   : shape->lower.z);
+        pls_vec3 p = pls_add(item->position, pls_scale(pls_rotate(turn, pls_sub(X, shape->mass.centre)), item->scale));
+        ends corner = ends_of_ball(f, t, p, 0.0);
+        for (int j = 0; j < 5; ++j) box.value[j] = fmax(box.value[j], corner.value[j]);
+    }
+    for (int j = 0; j < 5; ++j) e->value[j] = fmin(e->value[j], box.value[j]);
+}
+
+static void add_item(pls_render_framing *f, const sides *t, const pls_render_item *item)
+{
+    ends e = ends_of_ball(f, t, item->position, radius_of(item));
+    narrow_to_box(f, t, item, &e);
+    widen(f, &e);
 }
 
 enum { MOST_WALLS = 12 }; ///< of which corners are looked for
@@ -171,7 +204,8 @@ static void add_corner(pls_render_framing *f, const sides *t, const wall *walls,
     {
         if (pls_dot(walls[k].normal, pls_sub(p, walls[k].point)) < -1e-6 * reach) return;
     }
-    add_ball(f, t, p, 0.0);
+    ends corner = ends_of_ball(f, t, p, 0.0);
+    widen(f, &corner);
 }
 
 static void add_corners(pls_render_framing *f, const sides *t, const pls_render_item *items, size_t count)
@@ -202,7 +236,7 @@ void pls_render_framing_add(pls_render_framing *f, const pls_render_item *items,
     sides t = sides_of(f);
     for (size_t k = 0; k < count; ++k)
     {
-        if (!items[k].shape->ops->unbounded && items[k].opacity > 0.0f) add_ball(f, &t, items[k].position, radius_of(&items[k]));
+        if (!items[k].shape->ops->unbounded && items[k].opacity > 0.0f) add_item(f, &t, &items[k]);
     }
     add_corners(f, &t, items, count);
 }

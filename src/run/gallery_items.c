@@ -36,8 +36,7 @@ static pls_status find_columns(const pls_frame *frame, const char *prefix, colum
     return find_column(frame, prefix, "group", 1, &c->group);
 }
 
-/// An unbounded shape, or one without volume.
-static bool is_wall(const pls_shape *shape) { return shape->ops->unbounded || !(shape->mass.volume > 0.0); }
+static bool is_wall(const pls_shape *shape) { return shape->ops->unbounded || shape->ops->wall; }
 
 /// `hidden`: a flag for each entry of the scene; groups are numbered by entries, from one.
 static pls_status make_item(const pls_scene *scene, const columns *c, size_t row, const pls_gallery_look *look, const bool *hidden,

@@ -80,16 +80,40 @@ static pls_status choose_energy(pls_paint *paint, const pls_frame *frame)
 
 // ---- names ------------------------------------------------------------------------------------------------------------------------------
 
-static const char *group_name(const pls_scene *scene, size_t k)
+/// Whether the c-th shape of an entry makes bodies with a colour of their own.
+static bool has_colour(const pls_scene *scene, const pls_scene_body *body, size_t c)
 {
-    return scene->shapes[scene->bodies[k].shape].ops->unbounded ? NULL : scene->bodies[k].name;
+    const pls_shape_ops *ops = pls_scene_choice_shape(scene, body, c)->ops;
+    return !ops->unbounded && !ops->wall;
 }
 
-static const char *shape_name(const pls_scene *scene, size_t k) { return scene->shapes[k].ops->unbounded ? NULL : scene->shapes[k].name; }
+static const char *group_name(const pls_scene *scene, size_t k)
+{
+    return has_colour(scene, &scene->bodies[k], 0) ? scene->bodies[k].name : NULL;
+}
 
-static const char *material_name(const pls_scene *scene, size_t k) { return scene->materials[k].name; }
+static const char *shape_name(const pls_scene *scene, size_t k)
+{
+    for (size_t b = 0; b < scene->body_count; ++b)
+    {
+        for (size_t c = 0; c < scene->bodies[b].choices; ++c)
+        {
+            if (scene->bodies[b].choice[c].shape == (int)k && has_colour(scene, &scene->bodies[b], c)) return scene->shapes[k].name;
+        }
+    }
+    return NULL;
+}
 
-/// Number the names that bounded bodies can have, in order of the scene; ids begin at `first`.
+static const char *material_name(const pls_scene *scene, size_t k)
+{
+    for (size_t b = 0; b < scene->body_count; ++b)
+    {
+        if (scene->bodies[b].material == (int)k && has_colour(scene, &scene->bodies[b], 0)) return scene->materials[k].name;
+    }
+    return NULL;
+}
+
+/// Number the names that bounded bodies can have, in order of the scene (null: walls have none); ids begin at `first`.
 static pls_status name_categories(pls_paint *paint, const pls_scene *scene, size_t count, size_t first,
                                   const char *(*name)(const pls_scene *scene, size_t k))
 {
@@ -223,7 +247,10 @@ pls_status pls_paint_apply(const pls_paint *paint, const pls_frame *frame, pls_r
     else
         PLS_TRY(need(frame, paint->field, &column));
     for (size_t k = 0; k < column->rows; ++k)
+    {
+        if (items[k].shape->ops->wall) continue;
         items[k].value = paint->kinetic ? kinetic_energy(of, &items[k], k) : value_of(paint, column, k);
+    }
     return PLS_OK;
 }
 

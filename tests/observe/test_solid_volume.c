@@ -29,7 +29,8 @@ static const pls_shape_ops ball_ops = {.sdf = ball_distance};
 static const pls_shape_ops disc_ops = {.sdf = disc_distance};
 static const pls_shape_ops cuboid_ops = {.sdf = cuboid_distance};
 #define AS_IT_IS .principal = {1, 0, 0, 0}
-static const pls_shape unit_ball = {.ops = &ball_ops, .values = (const double[]){1}, AS_IT_IS}, unit_disc = {.ops = &disc_ops, .values = (const double[]){1}, AS_IT_IS};
+static const pls_shape unit_ball = {.ops = &ball_ops, .values = (const double[]){1}, AS_IT_IS},
+                       unit_disc = {.ops = &disc_ops, .values = (const double[]){1}, AS_IT_IS};
 static const pls_shape cuboid = {.ops = &cuboid_ops, .values = (const double[]){0.5, 0.4, 0.3}, AS_IT_IS};
 
 static pls_solid ball(pls_vec3 position, double radius)
