@@ -32,7 +32,7 @@ typedef struct cli_verb
     int (*function)(int argc, char **argv);
 } cli_verb;
 
-extern const cli_verb cli_run, cli_resume, cli_check, cli_info, cli_schema, cli_plugin;
+extern const cli_verb cli_run, cli_resume, cli_check, cli_info, cli_render, cli_schema, cli_plugin;
 
 /// What cli_next_option returns besides the index of an option.
 enum {
@@ -50,6 +50,9 @@ void cli_print_help(const cli_verb *verb);
 int cli_wrong_usage(const cli_verb *verb, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /// The library's last message to the standard error; returns `code`.
 int cli_failed(int code);
+
+/// Of a failure: CLI_USAGE where the user can mend the scene or the command, else CLI_FAILED.
+int cli_code_of(pls_status status);
 
 /// The one argument that is not an option; null when there is none or more, which is then told. `what` names it.
 const char *cli_only_argument(const cli_verb *verb, int argc, char **argv, const char *what);

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const cli_verb *const verbs[] = {&cli_run, &cli_resume, &cli_check, &cli_info, &cli_schema, &cli_plugin};
+static const cli_verb *const verbs[] = {&cli_run, &cli_resume, &cli_check, &cli_info, &cli_render, &cli_schema, &cli_plugin};
 
 enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 

@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum {
-    MAX_OPTIONS = 16,
+    MAX_OPTIONS = 40,
     FIRST_VALUE = 256 ///< what getopt_long returns for option 0; beyond all characters
 };
 
@@ -125,6 +125,23 @@ int cli_failed(int code)
     fprintf(stderr, "particls: %s\n", pls_last_message());
     return code;
 }
+
+/// Failures that are the user's to mend in the scene or the command.
+static bool is_wrong_input(pls_status status)
+{
+    switch (status)
+    {
+        case PLS_IO:
+        case PLS_DISK_FULL:
+        case PLS_OUT_OF_MEMORY:
+        case PLS_CORRUPT:
+        case PLS_VERSION:
+        case PLS_INTERRUPTED: return false;
+        default: return true;
+    }
+}
+
+int cli_code_of(pls_status status) { return status == PLS_OK ? CLI_DONE : is_wrong_input(status) ? CLI_USAGE : CLI_FAILED; }
 
 const char *cli_only_argument(const cli_verb *verb, int argc, char **argv, const char *what)
 {

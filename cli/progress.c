@@ -108,21 +108,6 @@ void cli_progress_start(cli_progress *progress, pls_run_def *def, bool quiet)
     catch_signal(SIGTERM);
 }
 
-/// Failures that are the user's to mend in the scene or the command, when they come before the first step.
-static bool is_wrong_input(pls_status status)
-{
-    switch (status)
-    {
-        case PLS_IO:
-        case PLS_DISK_FULL:
-        case PLS_OUT_OF_MEMORY:
-        case PLS_CORRUPT:
-        case PLS_VERSION:
-        case PLS_INTERRUPTED: return false;
-        default: return true;
-    }
-}
-
 int cli_progress_end(cli_progress *progress, pls_status status, const char *directory)
 {
     close_line(progress);
@@ -130,7 +115,7 @@ int cli_progress_end(cli_progress *progress, pls_status status, const char *dire
     if (status != PLS_OK)
     {
         fflush(stdout);
-        return cli_failed(!progress->begun && is_wrong_input(status) ? CLI_USAGE : CLI_FAILED);
+        return cli_failed(progress->begun ? CLI_FAILED : cli_code_of(status)); // what the user can mend shows before the first step
     }
     if (progress->quiet || !progress->begun) return CLI_DONE;
     char wall[32];

@@ -11,7 +11,7 @@
 /// Bytes compressed at once. VTK's own default; small enough for readers that stream, large enough to compress.
 enum { BLOCK_SIZE = 32768 };
 
-static const char *type_name(pls_type type)
+const char *pls_vtk_type_name(pls_type type)
 {
     switch (type)
     {
@@ -73,12 +73,14 @@ static pls_status add_escaped(pls_text *xml, const char *text)
     return PLS_OK;
 }
 
-static pls_status add_array(pls_vtk *vtk, pls_vtk_section section, const char *name, const char *type, int components, size_t size,
-                            const void *data)
+/// Field data belong to no points or cells, so each array tells its own length.
+static pls_status add_array(pls_vtk *vtk, pls_vtk_section section, const char *name, const char *type, int components, size_t tuples,
+                            size_t size, const void *data)
 {
     pls_text *xml = &vtk->xml[section];
     PLS_TRY(pls_text_print(xml, "        <DataArray type=\"%s\" Name=\"", type));
     PLS_TRY(add_escaped(xml, name));
+    if (section == PLS_VTK_FIELD_DATA) PLS_TRY(pls_text_print(xml, "\" NumberOfTuples=\"%zu", tuples));
     PLS_TRY(pls_text_print(xml, "\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%zu\"/>\n", components, vtk->appended.size));
     return append_array(&vtk->appended, data, size);
 }
@@ -87,7 +89,8 @@ pls_status pls_vtk_add(pls_vtk *vtk, pls_vtk_section section, const char *name, 
                        const void *data)
 {
     if (section == PLS_VTK_POINTS) vtk->points = tuples;
-    return add_array(vtk, section, name, type_name(type), components, tuples * (size_t)components * pls_type_size(type), data);
+    return add_array(vtk, section, name, pls_vtk_type_name(type), components, tuples, tuples * (size_t)components * pls_type_size(type),
+                     data);
 }
 
 /// Cells of `corners` points each, the points in order.
@@ -96,9 +99,9 @@ static pls_status add_cells(pls_vtk *vtk, pls_vtk_section section, size_t count,
     int64_t *index = NULL;
     PLS_TRY(pls_allocate(&index, count * corners, sizeof *index, "the cells of a frame"));
     for (size_t k = 0; k < count * corners; ++k) index[k] = (int64_t)k;
-    pls_status status = add_array(vtk, section, "connectivity", "Int64", 1, count * corners * sizeof *index, index);
+    pls_status status = add_array(vtk, section, "connectivity", "Int64", 1, count * corners, count * corners * sizeof *index, index);
     for (size_t k = 0; k < count; ++k) index[k] = (int64_t)((k + 1) * corners);
-    if (status == PLS_OK) status = add_array(vtk, section, "offsets", "Int64", 1, count * sizeof *index, index);
+    if (status == PLS_OK) status = add_array(vtk, section, "offsets", "Int64", 1, count, count * sizeof *index, index);
     pls_release(&index);
     return status;
 }
@@ -117,7 +120,7 @@ pls_status pls_vtk_add_lines(pls_vtk *vtk, size_t count)
 
 static pls_status print_file(pls_atomic_file *file, const pls_vtk *vtk, double time)
 {
-    static const char *const elements[PLS_VTK_SECTION_COUNT] = {"Points", "PointData", "CellData", "Verts", "Lines"};
+    static const char *const elements[PLS_VTK_SECTION_COUNT] = {"Points", "PointData", "CellData", "Verts", "Lines", "FieldData"};
     char number[32];
     PLS_TRY(pls_atomic_print(
         file,
@@ -127,13 +130,16 @@ static pls_status print_file(pls_atomic_file *file, const pls_vtk *vtk, double t
         "  <PolyData>\n"
         "    <FieldData>\n"
         "      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">%s</DataArray>\n"
+        "%s"
         "    </FieldData>\n"
         "    <Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" NumberOfLines=\"%zu\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
-        pls_format_double(number, time), vtk->points, vtk->vertices, vtk->lines));
+        pls_format_double(number, time), vtk->xml[PLS_VTK_FIELD_DATA].size > 0 ? vtk->xml[PLS_VTK_FIELD_DATA].data : "", vtk->points,
+        vtk->vertices, vtk->lines));
     for (int section = 0; section < PLS_VTK_SECTION_COUNT; ++section)
     {
         const pls_text *xml = &vtk->xml[section];
-        if (xml->size > 0) PLS_TRY(pls_atomic_print(file, "      <%s>\n%s      </%s>\n", elements[section], xml->data, elements[section]));
+        if (xml->size > 0 && section != PLS_VTK_FIELD_DATA)
+            PLS_TRY(pls_atomic_print(file, "      <%s>\n%s      </%s>\n", elements[section], xml->data, elements[section]));
     }
     PLS_TRY(pls_atomic_print(file, "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_"));
     PLS_TRY(pls_atomic_write(file, vtk->appended.data, vtk->appended.size));

@@ -16,6 +16,7 @@ typedef enum pls_vtk_section {
     PLS_VTK_CELL_DATA,
     PLS_VTK_VERTICES,
     PLS_VTK_LINES,
+    PLS_VTK_FIELD_DATA, ///< of the whole file, of any length
     PLS_VTK_SECTION_COUNT
 } pls_vtk_section;
 
@@ -27,6 +28,8 @@ typedef struct pls_vtk
     size_t points, vertices, lines;
 } pls_vtk;
 
+/// "Float64"
+const char *pls_vtk_type_name(pls_type type);
 /// Add an array of `tuples` tuples of `components` numbers, packed.
 pls_status pls_vtk_add(pls_vtk *vtk, pls_vtk_section section, const char *name, pls_type type, int components, size_t tuples,
                        const void *data);
@@ -37,7 +40,8 @@ pls_status pls_vtk_add_lines(pls_vtk *vtk, size_t count);
 pls_status pls_vtk_write(const pls_vtk *vtk, const char *path, double time);
 void pls_vtk_free(pls_vtk *vtk);
 
-/// Bodies as points in order of their numbers, with the frame fields of the field table and those `def` asks for. Unbounded bodies (walls) are left out.
+/// Bodies as points in order of their numbers, with the frame fields of the field table and those `def` asks for. Unbounded bodies (walls) are no
+/// points: they stand in the field data (io/frame.h).
 /// NOT_FOUND names a field that does not exist.
 pls_status pls_vtk_write_bodies(const char *path, pls_world *world, const pls_frames_def *def);
 /// Touching contacts as lines from body to body (to the foot point on a wall), across periodic images: body_i, body_j, delta, force on i, normal force.

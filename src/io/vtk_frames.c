@@ -2,51 +2,22 @@
 
 #include "base/registry.h"
 #include "step/contact_view.h"
+#include "io/frame.h"
 #include "io/vtk.h"
 
+#include <stdio.h>
 #include <string.h>
 
-/// Memory rows of the bodies in a frame, in order of their numbers.
-typedef struct body_rows
+/// Gather one field in order of numbers and add it under the name `prefix` field.
+static pls_status add_field(pls_vtk *vtk, pls_vtk_section section, pls_world *world, const uint32_t *row, size_t count, const char *prefix,
+                            const char *field)
 {
-    uint32_t *row;
-    size_t count;
-} body_rows;
-
-static bool is_unbounded(const pls_field_view *radius, uint32_t row)
-{
-    double r;
-    memcpy(&r, (const char *)radius->data + row * radius->stride, sizeof r);
-    return isinf(r);
-}
-
-static pls_status find_rows(pls_world *world, body_rows *rows)
-{
-    *rows = (body_rows){0};
-    pls_field_view radius;
-    PLS_TRY(pls_world_body_field(world, "radius", &radius));
-    size_t numbers;
-    const uint32_t *row_of = pls_world_rows_by_number(world, &numbers);
-    PLS_TRY(pls_allocate(&rows->row, numbers, sizeof *rows->row, "the rows of a frame"));
-    for (size_t number = 0; number < numbers; ++number)
-    {
-        uint32_t row = row_of[number];
-        if (row != UINT32_MAX && !is_unbounded(&radius, row)) rows->row[rows->count++] = row;
-    }
-    return PLS_OK;
-}
-
-/// Gather one field in order of numbers and add it.
-static pls_status add_field(pls_vtk *vtk, pls_vtk_section section, pls_world *world, const body_rows *rows, const char *name)
-{
-    pls_field_view view;
-    PLS_TRY(pls_world_body_field(world, name, &view));
-    size_t size = (size_t)view.components * pls_type_size(view.type);
-    char *packed = NULL;
-    PLS_TRY(pls_allocate(&packed, rows->count, size, "a field of a frame"));
-    for (size_t k = 0; k < rows->count; ++k) memcpy(packed + k * size, (const char *)view.data + rows->row[k] * view.stride, size);
-    pls_status status = pls_vtk_add(vtk, section, name, view.type, view.components, rows->count, packed);
-    pls_release(&packed);
+    pls_frame_column column = {0};
+    char name[2 * PLS_NAME_SIZE];
+    PLS_TRY(pls_frame_gather(&column, world, field, row, count));
+    snprintf(name, sizeof name, "%s%s", prefix, field);
+    pls_status status = pls_vtk_add(vtk, section, name, column.type, column.components, count, column.data);
+    pls_release(&column.data);
     return status;
 }
 
@@ -80,29 +51,31 @@ static pls_status check_requested(const pls_frames_def *def)
     return PLS_OK;
 }
 
-static pls_status fill_bodies(pls_vtk *vtk, pls_world *world, const pls_frames_def *def, const body_rows *rows)
+static pls_status fill_bodies(pls_vtk *vtk, pls_world *world, const pls_frames_def *def, const pls_frame_rows *rows)
 {
-    PLS_TRY(add_field(vtk, PLS_VTK_POINTS, world, rows, "position"));
+    PLS_TRY(add_field(vtk, PLS_VTK_POINTS, world, rows->body, rows->body_count, "", "position"));
     size_t count;
     const pls_field *field = pls_fields(PLS_TABLE_BODIES, &count);
     for (size_t f = 0; f < count; ++f)
     {
         if (is_position(field[f].name)) continue;
         if (!(field[f].flags & PLS_FIELD_FRAME) && !is_requested(def, field[f].name)) continue;
-        PLS_TRY(add_field(vtk, PLS_VTK_POINT_DATA, world, rows, field[f].name));
+        PLS_TRY(add_field(vtk, PLS_VTK_POINT_DATA, world, rows->body, rows->body_count, "", field[f].name));
     }
-    return pls_vtk_add_vertices(vtk, rows->count);
+    for (const char *const *name = pls_frame_wall_fields; rows->wall_count > 0 && *name; ++name)
+        PLS_TRY(add_field(vtk, PLS_VTK_FIELD_DATA, world, rows->wall, rows->wall_count, PLS_WALL_PREFIX, *name));
+    return pls_vtk_add_vertices(vtk, rows->body_count);
 }
 
 pls_status pls_vtk_write_bodies(const char *path, pls_world *world, const pls_frames_def *def)
 {
     PLS_TRY(check_requested(def));
     pls_vtk vtk = {0};
-    body_rows rows = {0};
-    pls_status status = find_rows(world, &rows);
+    pls_frame_rows rows = {0};
+    pls_status status = pls_frame_rows_find(&rows, world);
     if (status == PLS_OK) status = fill_bodies(&vtk, world, def, &rows);
     if (status == PLS_OK) status = pls_vtk_write(&vtk, path, pls_world_time(world));
-    pls_release(&rows.row);
+    pls_frame_rows_free(&rows);
     pls_vtk_free(&vtk);
     return status;
 }

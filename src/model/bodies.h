@@ -98,7 +98,7 @@ enum pls_body_flags {
     X("number", PLS_U32, 1, PERSISTS | FRAME | ID, "", kind, pls_body_kind, number, "persistent number of the body")             \
     X("generation", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, generation, "how often the number has been given")            \
     X("group", PLS_U32, 1, PERSISTS | FRAME, "", kind, pls_body_kind, group, "entry of the scene it belongs to")                 \
-    X("shape", PLS_U16, 1, PERSISTS, "", kind, pls_body_kind, shape, "its shape")                                                \
+    X("shape", PLS_U16, 1, PERSISTS | FRAME, "", kind, pls_body_kind, shape, "its shape")                                        \
     X("material", PLS_U16, 1, PERSISTS | FRAME, "", kind, pls_body_kind, material, "its material")                               \
     X("flags", PLS_U32, 1, PERSISTS, "", kind, pls_body_kind, flags,                                                             \
       "how it moves: 1 unbounded, 2 driven, 4 partly driven, 8 anisotropic, 16 neither ball nor half-space")                     \
@@ -120,7 +120,7 @@ enum pls_body_flags {
     X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                     \
     X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                        \
     X("energy_slid", PLS_F64, 1, PERSISTS, "J", slid, double, , "half of the energy taken by sliding at its contacts")           \
-    X("scale", PLS_F64, 1, PERSISTS, "", scale, double, , "multiplies the lengths of its shape")
+    X("scale", PLS_F64, 1, PERSISTS | FRAME, "", scale, double, , "multiplies the lengths of its shape")
 
 /// Zero-initialise; `pls_bodies_free` releases.
 typedef struct pls_bodies

@@ -18,7 +18,7 @@ typedef struct pls_render_item
     pls_quat orientation;
     double scale;
     double radius; ///< of the bounding sphere [m]; 0: of the shape times `scale`
-    double value;  ///< what the colour tells; NaN: grey
+    double value;  ///< what the colour tells; NaN: the plain colour
     float opacity; ///< 0 to 1
 } pls_render_item;
 
@@ -32,6 +32,9 @@ typedef struct pls_render_camera
 
 typedef enum pls_render_colours {
     PLS_RENDER_VIRIDIS,     ///< perceptually uniform
+    PLS_RENDER_MAGMA,       ///< the same from black to light yellow
+    PLS_RENDER_COOLWARM,    ///< blue, grey in the middle, red: for values of both signs
+    PLS_RENDER_GREY,        ///< from dark to light
     PLS_RENDER_CATEGORICAL, ///< the value rounded to an integer picks one of eight colours
 } pls_render_colours;
 
@@ -41,15 +44,21 @@ typedef struct pls_render_options
     pls_render_colours colours;
     double low, high;      ///< values at the ends of the colour bar
     uint8_t background[4]; ///< sRGB and opacity
+    uint8_t plain[3];      ///< of bodies without a value, sRGB
     pls_vec3 light;        ///< direction towards the light
     double softness;       ///< of shadows: tangent of the light's half width, 0: sharp
     double ambient;        ///< part of the light that comes from everywhere, 0 to 1
     bool shadows;
-    bool smooth_edges; ///< 2 x 2 rays in pixels where bodies meet
-    bool bar;          ///< draw the colour bar
-    int threads;       ///< 0: as many as `pls_threads` says
-    const char *title; ///< of the bar; null: none
-    const char *unit;  ///< of the value; null or "": none
+    bool smooth_edges;         ///< 2 x 2 rays in pixels where bodies meet
+    bool bar;                  ///< draw the colour bar
+    int threads;               ///< 0: as many as `pls_threads` says
+    const char *title;         ///< of the bar; null: none
+    const char *unit;          ///< of the value; null or "": none
+    const char *const *labels; ///< names of the categories `low` to `high`; null: their numbers
+    const char *caption;       ///< in the lower left corner; null: none
+    bool cut;                  ///< leave out what lies beyond the plane cut_normal . x = cut_distance; planes stay whole
+    pls_vec3 cut_normal;       ///< unit, towards what is left out
+    double cut_distance;       ///< [m]
 } pls_render_options;
 
 /// Rows from top to bottom, four bytes a pixel: sRGB and opacity, not premultiplied.
@@ -67,9 +76,28 @@ pls_status pls_render_image(const pls_render_item *items, size_t count, const pl
                             pls_render_picture *picture);
 void pls_render_picture_free(pls_render_picture *picture);
 
-/// A camera that looks along `direction` and shows all bounded items; in 2D, direction (0, 0, -1), up (0, 1, 0), field_of_view 0.
+/// How far pictures must reach to show what was added: first the look, then any number of bodies, of any number of moments. To be made by pls_render_framing_start.
+typedef struct pls_render_framing
+{
+    pls_vec3 forward, right, up;
+    double field_of_view, aspect;                            ///< 0: orthographic; width over height
+    double left_part, right_part, height_part;               ///< of half the picture that bodies may fill: a border and the bar stay free
+    double left_end, right_end, low_end, high_end, near_end; ///< the bodies' silhouettes so far, and how far they reach backwards
+    bool any;
+} pls_render_framing;
+
+/// Look along `direction`; in 2D (0, 0, -1), with `up` (0, 1, 0) and field_of_view 0. Of `options`, size and bar matter.
+pls_render_framing pls_render_framing_start(pls_vec3 direction, pls_vec3 up, double field_of_view, const pls_render_options *options);
+/// Bounded, visible items count, and the corners of a box of planes.
+void pls_render_framing_add(pls_render_framing *framing, const pls_render_item *items, size_t count);
+/// The nearest camera that shows all.
+pls_render_camera pls_render_framing_end(const pls_render_framing *framing);
+/// All three for one picture.
 pls_render_camera pls_render_fit(const pls_render_item *items, size_t count, pls_vec3 direction, pls_vec3 up, double field_of_view,
-                                 double aspect);
+                                 const pls_render_options *options);
+
+/// The outward normal of an unbounded item, and a point on it [m].
+void pls_render_plane_of(const pls_render_item *item, pls_vec3 *normal, pls_vec3 *point);
 
 // ---- files ----------------------------------------------------------------------------------------------------------------------------
 
@@ -103,6 +131,10 @@ void pls_render_colour(pls_render_colours colours, double value, double low, dou
 double pls_render_linear_from_srgb(uint8_t byte);
 /// The bar at the right edge, with ticks, title and unit.
 void pls_render_bar(pls_render_picture *picture, const pls_render_options *options);
+/// The caption in the lower left corner.
+void pls_render_caption(pls_render_picture *picture, const pls_render_options *options);
+/// The width at the right edge that the bar, its numbers and its title need [pixels].
+int pls_render_bar_strip(const pls_render_options *options);
 /// Where the bar is: left, top, right, bottom (right and bottom exclusive) [pixels].
 void pls_render_bar_place(const pls_render_options *options, int place[4]);
 

@@ -1,6 +1,6 @@
 // sphere_trace.c -- where rays meet bodies, how much light falls there, and the picture made of that.
 //
-// Balls, planes and flat shapes are met in closed form. All else by sphere tracing (Hart, Sphere tracing, The Visual Computer 12, 1996) with steps longer than the
+// A shape that is the union of parts (compound, mesh) is drawn as its parts. Balls, triangles, planes and flat shapes are met in closed form. All else by sphere tracing (Hart, Sphere tracing, The Visual Computer 12, 1996) with steps longer than the
 // distance, taken back where two unbounding spheres do not touch (Keinert et al., Enhanced sphere tracing, STAG 2014), and a bisection in the last step. Shadows are
 // soft by how close a ray to the light passes, over how far it has gone, instead of by many rays. Each pixel follows from the scene alone, so threads cannot matter.
 // Bodies that let light through are met one after the other, ordered by distance and number.
@@ -13,11 +13,13 @@
 enum { TILE = 16, MOST_SIZE = 16384, MOST_STEPS = 200, BISECTIONS = 24, MOST_LAYERS = 16, MOST_COLUMNS = 512, SHADES = 8192 };
 static const double relaxation = 1.3;      ///< step over distance
 static const double touch = 1e-5;          ///< of the radius: nearer is on the surface
+static const double thin_line = 2.5e-3;    ///< half the width of a line, of the reach of all bodies
 static const double widest_penumbra = 0.5; ///< of the radius: wider ones would fill the columns of the light
 
 typedef enum body_kind {
     BALL,
     TRACED,
+    TRIANGLE, ///< without thickness, of a mesh
     PLANE,
     FLAT, ///< a 2D shape, in the plane z = its position's
 } body_kind;
@@ -29,7 +31,9 @@ typedef struct body
     body_kind kind;
     float albedo[3]; ///< linear
     float opacity;
-    pls_vec3 normal; ///< of a plane
+    pls_vec3 normal;    ///< of a plane or triangle
+    pls_vec3 corner[3]; ///< of a triangle
+    double line;        ///< half the width of the line that a flat wall without thickness is drawn as [m]
     const pls_render_item *item;
 } body;
 
@@ -37,6 +41,8 @@ typedef struct scene
 {
     const pls_render_options *options;
     pls_render_view view;
+    pls_render_item *parts; ///< of items that have some, as items
+    size_t part_count;
     body *bodies; ///< the bounded ones first, then planes
     size_t bounded, count;
     pls_render_grid tiles, columns;
@@ -67,6 +73,7 @@ pls_render_options pls_render_defaults(void)
                                 .height = 720,
                                 .high = 1.0,
                                 .background = {255, 255, 255, 255},
+                                .plain = {160, 160, 160},
                                 .light = {0.4, -0.5, 1.0},
                                 .softness = 0.08,
                                 .ambient = 0.4,
@@ -99,12 +106,11 @@ static bool is_ball(const pls_shape *shape)
 }
 
 /// The half-space phi <= 0 of an SDF that is linear.
-static void set_plane(body *b)
+void pls_render_plane_of(const pls_render_item *item, pls_vec3 *normal, pls_vec3 *point)
 {
-    const pls_render_item *item = b->item;
     pls_vec3 X = to_shape(item, item->position);
-    b->normal = turn_to_world(item, pls_unit(pls_shape_gradient(item->shape, X)));
-    b->centre = pls_sub(item->position, pls_scale(b->normal, item->scale * pls_shape_sdf(item->shape, X)));
+    *normal = turn_to_world(item, pls_unit(pls_shape_gradient(item->shape, X)));
+    *point = pls_sub(item->position, pls_scale(*normal, item->scale * pls_shape_sdf(item->shape, X)));
 }
 
 static void set_ball(body *b)
@@ -115,18 +121,44 @@ static void set_ball(body *b)
     b->radius = shape->margin * b->item->scale;
 }
 
+static bool is_triangle(const pls_shape *shape)
+{
+    return shape->dimension == 3 && shape->margin == 0.0 && shape->polytope && shape->polytope->vertex_count == 3;
+}
+
+static void set_triangle(body *b)
+{
+    const pls_render_item *item = b->item;
+    for (int k = 0; k < 3; ++k)
+    {
+        pls_vec3 from_centre = pls_sub(item->shape->polytope->vertex[k], item->shape->mass.centre);
+        b->corner[k] = pls_add(item->position, pls_scale(turn_to_world(item, from_centre), item->scale));
+    }
+    b->normal = pls_unit(pls_cross(pls_sub(b->corner[1], b->corner[0]), pls_sub(b->corner[2], b->corner[0])));
+}
+
+static body_kind kind_of(const pls_shape *shape)
+{
+    if (shape->dimension == 2) return FLAT;
+    return shape->ops->unbounded ? PLANE : is_ball(shape) ? BALL : is_triangle(shape) ? TRIANGLE : TRACED;
+}
+
 static void set_body(body *b, const pls_render_item *item, const pls_render_options *options)
 {
     static const uint8_t wall[3] = {215, 215, 215};
     *b = (body){.centre = item->position, .item = item, .opacity = fminf(fmaxf(item->opacity, 0.0f), 1.0f)};
     b->radius = item->radius > 0.0 ? item->radius : item->shape->radius * item->scale;
     uint8_t rgb[3];
-    pls_render_colour(options->colours, item->value, options->low, options->high, rgb);
-    if (item->shape->ops->unbounded) memcpy(rgb, wall, sizeof rgb);
+    if (isnan(item->value))
+        memcpy(rgb, options->plain, sizeof rgb);
+    else
+        pls_render_colour(options->colours, item->value, options->low, options->high, rgb);
+    if (item->shape->ops->unbounded || item->shape->ops->wall) memcpy(rgb, wall, sizeof rgb);
     for (int c = 0; c < 3; ++c) b->albedo[c] = (float)pls_render_linear_from_srgb(rgb[c]);
-    b->kind = item->shape->dimension == 2 ? FLAT : item->shape->ops->unbounded ? PLANE : is_ball(item->shape) ? BALL : TRACED;
-    if (b->kind == PLANE) set_plane(b);
+    b->kind = kind_of(item->shape);
+    if (b->kind == PLANE) pls_render_plane_of(item, &b->normal, &b->centre);
     if (b->kind == BALL) set_ball(b);
+    if (b->kind == TRIANGLE) set_triangle(b);
 }
 
 static pls_status check_item(const pls_render_item *item, size_t k)
@@ -141,19 +173,60 @@ static pls_status check_item(const pls_render_item *item, size_t k)
         k, item->shape ? "given" : "missing", item->position.x, item->position.y, item->position.z, item->scale, (double)item->opacity);
 }
 
+/// A part as an item of its own: from its frame to that of the whole, to that of the body, to the world.
+static pls_render_item item_of_part(const pls_render_item *item, const pls_shape_part *part)
+{
+    const pls_shape *whole = item->shape;
+    pls_render_item one = *item;
+    one.shape = part->shape;
+    one.scale = item->scale * part->scale;
+    one.radius = 0.0;
+    pls_vec3 from_centre = pls_sub(pls_part_to_whole(part, part->shape->mass.centre), whole->mass.centre);
+    one.position = pls_add(item->position, pls_scale(turn_to_world(item, from_centre), item->scale));
+    pls_quat to_body =
+        pls_quat_multiply(pls_quat_conjugate(whole->principal), pls_quat_multiply(part->orientation, part->shape->principal));
+    one.orientation = pls_quat_multiply(item->orientation, to_body);
+    return one;
+}
+
+static pls_status make_parts(scene *s, const pls_render_item *items, size_t count)
+{
+    size_t total = 0;
+    for (size_t k = 0; k < count; ++k) total += items[k].shape->part_count;
+    if (total >= UINT32_MAX / 4)
+        return pls_fail(PLS_LIMIT_EXCEEDED, "a picture of %zu parts of bodies is too large: leave some out", total);
+    PLS_TRY(pls_allocate(&s->parts, total, sizeof *s->parts, "the bodies of a picture"));
+    for (size_t k = 0; k < count; ++k)
+    {
+        const pls_shape *shape = items[k].shape;
+        for (size_t p = 0; p < shape->part_count; ++p) s->parts[s->part_count++] = item_of_part(&items[k], &shape->part[p]);
+    }
+    return PLS_OK;
+}
+
+/// Those of the items that are bounded, or those that are not; parts in place of wholes.
+static void add_bodies(scene *s, const pls_render_item *items, size_t count, bool unbounded)
+{
+    size_t next_part = 0;
+    for (size_t k = 0; k < count; ++k)
+    {
+        size_t parts = items[k].shape->part_count, first = next_part;
+        next_part += parts;
+        if (items[k].shape->ops->unbounded != unbounded) continue;
+        if (parts == 0) set_body(&s->bodies[s->count++], &items[k], s->options);
+        for (size_t p = 0; p < parts; ++p) set_body(&s->bodies[s->count++], &s->parts[first + p], s->options);
+    }
+}
+
 static pls_status make_bodies(scene *s, const pls_render_item *items, size_t count)
 {
     if (count >= UINT32_MAX / 4) return pls_fail(PLS_LIMIT_EXCEEDED, "a picture of %zu bodies is too large: leave some out", count);
     for (size_t k = 0; k < count; ++k) PLS_TRY(check_item(&items[k], k));
-    PLS_TRY(pls_allocate(&s->bodies, count, sizeof *s->bodies, "the bodies of a picture"));
-    for (int unbounded = 0; unbounded < 2; ++unbounded)
-    {
-        for (size_t k = 0; k < count; ++k)
-        {
-            if (items[k].shape->ops->unbounded == (unbounded == 1)) set_body(&s->bodies[s->count++], &items[k], s->options);
-        }
-        if (unbounded == 0) s->bounded = s->count;
-    }
+    PLS_TRY(make_parts(s, items, count));
+    PLS_TRY(pls_allocate(&s->bodies, count + s->part_count, sizeof *s->bodies, "the bodies of a picture"));
+    add_bodies(s, items, count, false);
+    s->bounded = s->count;
+    add_bodies(s, items, count, true);
     return PLS_OK;
 }
 
@@ -176,17 +249,23 @@ static pls_status make_tiles(scene *s, pls_render_extent *extent)
 static void measure(scene *s)
 {
     pls_vec3 lower = pls_vec(INFINITY, INFINITY, INFINITY), upper = pls_scale(lower, -1.0);
+    bool any = false;
     for (size_t k = 0; k < s->bounded; ++k)
     {
+        if (s->bodies[k].opacity <= 0.0f) continue;
+        any = true;
         pls_vec3 p = s->bodies[k].centre;
         double r = s->bodies[k].radius;
         lower = pls_vec(fmin(lower.x, p.x - r), fmin(lower.y, p.y - r), fmin(lower.z, p.z - r));
         upper = pls_vec(fmax(upper.x, p.x + r), fmax(upper.y, p.y + r), fmax(upper.z, p.z + r));
     }
-    bool any = s->bounded > 0;
     s->middle = any ? pls_scale(pls_add(lower, upper), 0.5) : pls_vec(0.0, 0.0, 0.0);
     s->reach = any ? 0.5 * pls_length(pls_sub(upper, lower)) : 1.0;
     double raw = 0.2 * s->reach, power = pow(10.0, floor(log10(raw)));
+    for (size_t k = 0; k < s->bounded; ++k)
+    {
+        if (s->bodies[k].kind == FLAT && s->bodies[k].item->shape->ops->wall) s->bodies[k].line = thin_line * s->reach;
+    }
     s->check = raw < 2.0 * power ? power : raw < 5.0 * power ? 2.0 * power : 5.0 * power;
 }
 
@@ -286,10 +365,12 @@ static bool trace_shape(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double f
     return false;
 }
 
-static bool hit_traced(const body *b, const pls_render_ray *ray, double *t)
+/// From `first` on.
+static bool hit_traced(const body *b, const pls_render_ray *ray, double first, double *t)
 {
     double from, to, scale = b->item->scale;
-    if (!within(ray, b->centre, b->radius * (1.0 + 1e-9), &from, &to) || to <= 0.0) return false;
+    if (!within(ray, b->centre, b->radius * (1.0 + 1e-9), &from, &to) || to <= fmax(first, 0.0)) return false;
+    from = fmax(from, first);
     pls_vec3 start = pls_add(ray->origin, pls_scale(ray->direction, from));
     if (!trace_shape(b->item->shape, to_shape(b->item, start), turn_to_shape(b->item, ray->direction), 0.0, (to - from) / scale, t))
         return false;
@@ -303,27 +384,71 @@ static bool hit_flat(const body *b, const pls_render_ray *ray, double *t)
     if (!isfinite(*t)) return false;
     pls_vec3 X = to_shape(b->item, pls_add(ray->origin, pls_scale(ray->direction, *t)));
     X.z = 0.0;
-    return pls_shape_sdf(b->item->shape, X) <= 0.0;
+    return pls_shape_sdf(b->item->shape, X) * b->item->scale <= b->line;
 }
 
-/// Only from its front: walls between the eye and what they hold are not drawn.
-static bool hit_plane(const body *b, const pls_render_ray *ray, double *t)
+/// Moeller & Trumbore, Fast, minimum storage ray-triangle intersection, J. Graphics Tools 2(1), 1997; edges are wide by round-off, so that neighbours leave no gap.
+static bool hit_triangle(const body *b, const pls_render_ray *ray, double first, double *t)
+{
+    pls_vec3 u = pls_sub(b->corner[1], b->corner[0]), v = pls_sub(b->corner[2], b->corner[0]), p = pls_cross(ray->direction, v);
+    double det = pls_dot(u, p);
+    if (det == 0.0) return false;
+    pls_vec3 from = pls_sub(ray->origin, b->corner[0]), q = pls_cross(from, u);
+    double x = pls_dot(from, p) / det, y = pls_dot(ray->direction, q) / det;
+    if (!(x >= -1e-9 && y >= -1e-9 && x + y <= 1.0 + 1e-9)) return false;
+    *t = pls_dot(v, q) / det;
+    return *t >= first;
+}
+
+/// Only from its front: walls between the eye and what they hold are not drawn. Planes end where they enter one another: those of a box are its sides.
+static bool hit_plane(const scene *s, const body *b, const pls_render_ray *ray, double *t)
 {
     double towards = pls_dot(b->normal, ray->direction);
     if (towards >= 0.0) return false;
     *t = pls_dot(b->normal, pls_sub(b->centre, ray->origin)) / towards;
+    pls_vec3 p = pls_add(ray->origin, pls_scale(ray->direction, *t));
+    for (size_t k = s->bounded; k < s->count; ++k)
+    {
+        const body *other = &s->bodies[k];
+        if (other != b && other->kind == PLANE && other->opacity > 0.0f &&
+            pls_dot(other->normal, pls_sub(p, other->centre)) < -1e-9 * s->reach)
+            return false;
+    }
     return true;
 }
 
-static bool hit_body(const body *b, const pls_render_ray *ray, double *t)
+/// The part of a ray that lies on the side of the cut that is kept.
+static void keep_side(const scene *s, const pls_render_ray *ray, double *from, double *to)
+{
+    *from = -INFINITY;
+    *to = INFINITY;
+    if (!s->options->cut) return;
+    double towards = pls_dot(s->options->cut_normal, ray->direction);
+    double left = s->options->cut_distance - pls_dot(s->options->cut_normal, ray->origin);
+    if (towards > 0.0) *to = left / towards;
+    if (towards < 0.0) *from = left / towards;
+    if (towards == 0.0 && left < 0.0) *to = -INFINITY;
+}
+
+static bool hit_ball(const body *b, const pls_render_ray *ray, double first, double *t)
 {
     double to;
+    if (!within(ray, b->centre, b->radius, t, &to) || to < first) return false;
+    *t = fmax(*t, first);
+    return true;
+}
+
+static bool hit_body(const scene *s, const body *b, const pls_render_ray *ray, double *t)
+{
+    double first, last;
+    keep_side(s, ray, &first, &last);
     switch (b->kind)
     {
-        case BALL: return within(ray, b->centre, b->radius, t, &to);
-        case PLANE: return hit_plane(b, ray, t);
-        case FLAT: return hit_flat(b, ray, t);
-        default: return hit_traced(b, ray, t);
+        case BALL: return hit_ball(b, ray, first, t) && *t <= last;
+        case TRIANGLE: return hit_triangle(b, ray, first, t) && *t <= last;
+        case PLANE: return hit_plane(s, b, ray, t);
+        case FLAT: return hit_flat(b, ray, t) && *t >= first && *t <= last;
+        default: return hit_traced(b, ray, first, t) && *t <= last;
     }
 }
 
@@ -332,7 +457,7 @@ static bool before(hit a, hit b) { return a.t < b.t || (a.t == b.t && a.body < b
 static void try_body(const scene *s, const pls_render_ray *ray, uint32_t k, hit after, hit *best)
 {
     hit found = {.body = k};
-    if (!hit_body(&s->bodies[k], ray, &found.t)) return;
+    if (!hit_body(s, &s->bodies[k], ray, &found.t)) return;
     if (!s->view.orthographic && found.t <= 0.0) return;
     if (before(after, found) && before(found, *best)) *best = found;
 }
@@ -390,6 +515,32 @@ static double pass_ball(const scene *s, const body *b, pls_vec3 p)
     return gap <= 0.0 ? 0.0 : smooth(gap / wide);
 }
 
+/// What a triangle lets through: by how far beside it the ray meets its plane.
+static double pass_triangle(const scene *s, const body *b, pls_vec3 p)
+{
+    double towards = pls_dot(b->normal, s->light), t = pls_dot(b->normal, pls_sub(b->corner[0], p)) / towards;
+    if (!(t > 2e-3 * b->radius) || !isfinite(t)) return 1.0;
+    pls_vec3 q = pls_add(p, pls_scale(s->light, t));
+    double beside = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+        pls_vec3 edge = pls_sub(b->corner[(k + 1) % 3], b->corner[k]), out = pls_cross(edge, b->normal);
+        beside = fmax(beside, pls_dot(out, pls_sub(q, b->corner[k])) / pls_length(out));
+    }
+    double wide = fmin(s->options->softness * t, widest_penumbra * b->radius);
+    return beside <= 0.0 ? 0.0 : wide > 0.0 ? smooth(beside * fabs(towards) / wide) : 1.0;
+}
+
+static double pass_body(const scene *s, const body *b, pls_vec3 p)
+{
+    switch (b->kind)
+    {
+        case BALL: return pass_ball(s, b, p);
+        case TRIANGLE: return pass_triangle(s, b, p);
+        default: return pass_traced(s, b, p);
+    }
+}
+
 /// How much of the light reaches the point p of body `self`, 0 to 1.
 static double lit(const scene *s, pls_vec3 p, uint32_t self)
 {
@@ -397,15 +548,16 @@ static double lit(const scene *s, pls_vec3 p, uint32_t self)
     double x = (pls_dot(p, s->light_x) - s->corner_x) / s->side, y = (pls_dot(p, s->light_y) - s->corner_y) / s->side;
     if (!(x >= 0.0 && y >= 0.0 && x < s->columns.columns && y < s->columns.rows)) return 1.0;
     size_t cell = (size_t)y * (size_t)s->columns.columns + (size_t)x;
-    double height = pls_dot(p, s->light), pass = 1.0;
+    double height = pls_dot(p, s->light), pass = 1.0, first, last;
+    keep_side(s, &(pls_render_ray){p, s->light}, &first, &last);
     for (uint32_t n = s->columns.start[cell]; n < s->columns.start[cell + 1] && pass > 0.01; ++n)
     {
         uint32_t k = s->columns.body[n];
         const body *b = &s->bodies[k];
         if (pls_dot(b->centre, s->light) + b->radius <= height) break;
+        if (pls_dot(pls_sub(b->centre, p), s->light) > last) continue; // cut away, if not to its last bit
         if (k == self && (b->kind == BALL || b->item->shape->convex)) continue;
-        double through = b->kind == BALL ? pass_ball(s, b, p) : pass_traced(s, b, p);
-        pass *= 1.0 - (double)b->opacity * (1.0 - through);
+        pass *= 1.0 - (double)b->opacity * (1.0 - pass_body(s, b, p));
     }
     return pass;
 }
@@ -421,10 +573,17 @@ static pls_vec3 bevel(const body *b, pls_vec3 p)
     return pls_unit(pls_add(pls_scale(g, slope), pls_vec(0.0, 0.0, 1.0)));
 }
 
+/// Whether a point that was met is on the face that the cut leaves.
+static bool on_cut(const scene *s, const body *b, pls_vec3 p)
+{
+    if (!s->options->cut || (b->kind != BALL && b->kind != TRACED)) return false;
+    return fabs(pls_dot(s->options->cut_normal, p) - s->options->cut_distance) < 1e-7 * b->radius;
+}
+
 static pls_vec3 normal_at(const body *b, pls_vec3 p)
 {
     if (b->kind == BALL) return pls_scale(pls_sub(p, b->centre), 1.0 / b->radius);
-    if (b->kind == PLANE) return b->normal;
+    if (b->kind == PLANE || b->kind == TRIANGLE) return b->normal;
     if (b->kind == FLAT) return bevel(b, p);
     pls_vec3 g = pls_shape_gradient(b->item->shape, to_shape(b->item, p));
     double length = pls_length(g);
@@ -450,7 +609,9 @@ static double fade(const scene *s, const body *b, pls_vec3 p)
 static void shade(const scene *s, const pls_render_ray *ray, hit at, double weight, sample *out)
 {
     const body *b = &s->bodies[at.body];
-    pls_vec3 p = pls_add(ray->origin, pls_scale(ray->direction, at.t)), n = normal_at(b, p);
+    pls_vec3 p = pls_add(ray->origin, pls_scale(ray->direction, at.t));
+    pls_vec3 n = on_cut(s, b, p) ? s->options->cut_normal : normal_at(b, p);
+    if (b->kind == TRIANGLE && pls_dot(n, ray->direction) > 0.0) n = pls_scale(n, -1.0); // both sides are outside
     double facing = pls_dot(n, s->light), ambient = s->options->ambient, direct = 0.0, gloss = 0.0;
     if (facing > 0.0)
     {
@@ -608,6 +769,9 @@ static pls_status check_options(const pls_render_options *o)
         return pls_fail(PLS_INVALID_ARGUMENT,
                         "the light of a picture has an ambient part of %g and a softness of %g: give 0 to 1 and 0 to 10", o->ambient,
                         o->softness);
+    if (o->cut && !(fabs(pls_length(o->cut_normal) - 1.0) < 1e-6 && isfinite(o->cut_distance)))
+        return pls_fail(PLS_INVALID_ARGUMENT, "a picture is cut by the plane (%g, %g, %g) . x = %g: give a unit vector and a distance",
+                        o->cut_normal.x, o->cut_normal.y, o->cut_normal.z, o->cut_distance);
     return PLS_OK;
 }
 
@@ -640,6 +804,7 @@ static pls_status make_scene(scene *s, const pls_render_item *items, size_t coun
 
 static void free_scene(scene *s)
 {
+    pls_release(&s->parts);
     pls_release(&s->bodies);
     pls_release(&s->shade);
     pls_render_grid_free(&s->tiles);
@@ -664,6 +829,7 @@ pls_status pls_render_image(const pls_render_item *items, size_t count, const pl
         picture->height = options->height;
         draw(&s, what, picture->rgba);
         if (options->bar) pls_render_bar(picture, options);
+        pls_render_caption(picture, options);
     }
     pls_release(&what);
     free_scene(&s);

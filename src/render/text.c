@@ -1,6 +1,7 @@
 // text.c -- letters of five by seven dots, for the colour bar.
 //
-// Drawn by hand, one byte a row, the left dot in bit 4. Enough for numbers, units and short titles; a picture needs no font on the machine it is drawn on. What has no
+// Drawn by hand, one byte a row, the left dot in bit 4. Neighbouring dots are joined by strokes with round ends, which are drawn from their distance, with soft edges: letters
+// are smooth at any size. Enough for numbers, units and short titles; a picture needs no font on the machine it is drawn on. What has no
 // letter here is drawn as a hollow box. Greek mu, the degree sign and the raised 2 and 3 are read as UTF-8.
 
 #include "render/render.h"
@@ -8,6 +9,7 @@
 #include <string.h>
 
 enum { ROWS = 7, DOTS = 5 };
+static const double half_stroke = 0.5; ///< of a stroke's width [dots]
 
 typedef struct glyph
 {
@@ -127,29 +129,71 @@ int pls_render_text_width(const char *text, int size)
     return width;
 }
 
-static void fill(pls_render_picture *picture, int x, int y, int size, const uint8_t rgb[3])
+/// A stroke between the centres of two dots, in dots.
+typedef struct stroke
 {
-    for (int j = y; j < y + size; ++j)
+    double x0, y0, x1, y1;
+} stroke;
+
+enum { MOST_STROKES = 5 * ROWS * DOTS };
+
+static bool has_dot(const glyph *g, int i, int j) { return i >= 0 && i < DOTS && j >= 0 && j < ROWS && (g->row[j] >> (DOTS - 1 - i) & 1); }
+
+/// Every dot alone, and every two that touch; those that touch at a corner only where no third one goes around it.
+static int make_strokes(const glyph *g, stroke strokes[MOST_STROKES])
+{
+    int count = 0;
+    for (int dot = 0; dot < ROWS * DOTS; ++dot)
     {
-        for (int i = x; i < x + size; ++i)
+        int i = dot % DOTS, j = dot / DOTS;
+        if (!has_dot(g, i, j)) continue;
+        const int di[4] = {0, 1, 0, 1}, dj[4] = {0, 0, 1, 1};
+        for (int k = 0; k < 4; ++k)
         {
-            if (i < 0 || j < 0 || i >= picture->width || j >= picture->height) continue;
-            uint8_t *pixel = &picture->rgba[4 * ((size_t)j * (size_t)picture->width + (size_t)i)];
-            memcpy(pixel, rgb, 3);
-            pixel[3] = 255;
+            bool corner = k == 3 && (has_dot(g, i + 1, j) || has_dot(g, i, j + 1));
+            if (has_dot(g, i + di[k], j + dj[k]) && !corner) strokes[count++] = (stroke){i, j, i + di[k], j + dj[k]};
+        }
+        if (has_dot(g, i - 1, j + 1) && !has_dot(g, i - 1, j) && !has_dot(g, i, j + 1)) strokes[count++] = (stroke){i, j, i - 1, j + 1};
+    }
+    return count;
+}
+
+static double distance_to(const stroke *s, double x, double y)
+{
+    double dx = s->x1 - s->x0, dy = s->y1 - s->y0, square = dx * dx + dy * dy;
+    double t = square > 0.0 ? fmin(fmax(((x - s->x0) * dx + (y - s->y0) * dy) / square, 0.0), 1.0) : 0.0;
+    return hypot(x - s->x0 - t * dx, y - s->y0 - t * dy);
+}
+
+/// Lay a colour over a pixel.
+static void blend(uint8_t pixel[4], const uint8_t rgb[3], double cover)
+{
+    double below = pixel[3] / 255.0 * (1.0 - cover), opacity = cover + below;
+    if (!(cover > 0.0)) return;
+    for (int c = 0; c < 3; ++c) pixel[c] = (uint8_t)lround((cover * rgb[c] + below * pixel[c]) / opacity);
+    pixel[3] = (uint8_t)lround(255.0 * opacity);
+}
+
+static void draw_glyph(pls_render_picture *picture, const glyph *g, int left, int top, int size, const uint8_t rgb[3])
+{
+    stroke strokes[MOST_STROKES];
+    int count = make_strokes(g, strokes);
+    for (int j = -1; j <= ROWS * size; ++j)
+    {
+        for (int i = -1; i <= DOTS * size; ++i)
+        {
+            int x = left + i, y = top + j;
+            if (x < 0 || y < 0 || x >= picture->width || y >= picture->height) continue;
+            double distance = INFINITY;
+            for (int k = 0; k < count; ++k)
+                distance = fmin(distance, distance_to(&strokes[k], (i + 0.5) / size - 0.5, (j + 0.5) / size - 0.5));
+            double cover = 0.5 + (half_stroke - distance) * size;
+            blend(&picture->rgba[4 * ((size_t)y * (size_t)picture->width + (size_t)x)], rgb, fmin(fmax(cover, 0.0), 1.0));
         }
     }
 }
 
 void pls_render_text(pls_render_picture *picture, int x, int y, int size, const uint8_t rgb[3], const char *text)
 {
-    for (; *text; x += PLS_GLYPH_WIDTH * size)
-    {
-        const glyph *g = next_glyph(&text);
-        for (int dot = 0; dot < ROWS * DOTS; ++dot)
-        {
-            int i = dot % DOTS, j = dot / DOTS;
-            if (g->row[j] >> (DOTS - 1 - i) & 1) fill(picture, x + i * size, y + j * size, size, rgb);
-        }
-    }
+    for (; *text; x += PLS_GLYPH_WIDTH * size) draw_glyph(picture, next_glyph(&text), x, y, size, rgb);
 }

@@ -238,8 +238,9 @@ static void flat_shapes(void **state)
     (void)state;
     pls_shape *disc = make(&pls_sphere_shape, 2, 1.0), *ground = make(&pls_plane_shape, 2, 0.0);
     pls_render_item item = item_at(disc, pls_vec(0.5, 0.0, 0.0), 1.0, 0.5);
-    pls_render_camera camera = pls_render_fit(&item, 1, pls_vec(0.0, 0.0, -1.0), pls_vec(0.0, 1.0, 0.0), 0.0, 1.0);
-    outline o = outline_of(&item, 1, camera, plain(200, 200));
+    pls_render_options square = plain(200, 200);
+    pls_render_camera camera = pls_render_fit(&item, 1, pls_vec(0.0, 0.0, -1.0), pls_vec(0.0, 1.0, 0.0), 0.0, &square);
+    outline o = outline_of(&item, 1, camera, square);
     double radius = 100.0 / 1.05;
     assert_near(o.area, M_PI * radius * radius, 0.01 * M_PI * radius * radius);
     assert_near(o.x, 100.0, 1.0);
@@ -264,8 +265,8 @@ static void same_for_any_threads(void **state)
         items[k].opacity = k % 5 ? 1.0f : 0.4f;
     }
     items[COUNT - 1] = item_at(floor, pls_vec(0.0, 0.0, 0.0), 1.0, 0.0);
-    pls_render_camera camera = pls_render_fit(items, COUNT, pls_vec(-1.0, 1.0, -0.7), pls_vec(0.0, 0.0, 1.0), 0.6, 1.5);
     pls_render_options options = plain(240, 160);
+    pls_render_camera camera = pls_render_fit(items, COUNT, pls_vec(-1.0, 1.0, -0.7), pls_vec(0.0, 0.0, 1.0), 0.6, &options);
     options.threads = 1;
     pls_render_picture one = draw(items, COUNT, camera, options);
     options.threads = 2;
