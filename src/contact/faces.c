@@ -1,0 +1,353 @@
+// faces.c -- contact of faces by the volume of the overlap: forces that are the gradient of an energy.
+//
+// The deepest point of two nearly parallel faces jumps across them from step to step. Both laws here are integrals over the overlap P of the two bodies, which change
+// smoothly, and both forces are the exact gradient of an energy, whatever touches: faces, edges or corners. With d the depth of a point under the surface of a body,
+//     W = integral over P of (d_A + d_B) / 2 dV,        which for parallel faces is the integral of t^2/2 dA, t their local overlap.
+// d is linear in each cell of a body (the points nearest to one of its faces), so a cell of volume V_f and centroid c_f adds V_f d_f(c_f) to the integral, V_f n_f to
+// the force and c_f x V_f n_f to the torque: cutting polytopes by planes (clipped.h) gives all. (Clipping only the two most parallel faces along the normal of the
+// penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to 2e-3 of energy lost or won at tilts of 0.01 to 0.1.)
+//
+// VOLUME    energy kn W/A0. Force kn V/A0 for faces, at the centroid of the overlap. Additive: parts of a compound and triangles of a wall push with what lies over them.
+// MANIFOLD  energy kn delta^2/2 with delta = 2W/V = integral t^2 / integral t, a smooth maximum of t with neither a length nor a number of corners in it: the depth
+//           for parallel faces, 2/3 of it at an edge, 1/2 at a corner, where the force is 4/9 and 1/4 of the point law's. It acts where the weights
+//           d(delta)/d(t) = (2t - delta)/V have their middle: in the middle of parallel faces, at the edge of a wedge. A maximum over the corners of the common polygon
+//           (logarithm of a sum of exponentials, or a p-norm) jumps where one corner becomes two, and depends on a length or is no conservative force (p-norm weights do
+//           not sum to one).
+//
+// One contact has a force, not a couple: the part of the torque along the force, which twisting an overlap's outline gives, of order t/L of the force times L, is left out.
+// That is what remains of energy errors.
+// Walls (half-spaces, triangles and segments of meshes) count by their own d alone, in place of the half sum: buoyancy. A triangle is the prism behind it.
+// Rounded bodies: the cores, each moved by its margin along the normal of the penetration depth, so that the overlap vanishes with the depth. The normal's turning adds
+// errors of second order in the angle between it and the force.
+// A half-space and a sphere or an ellipsoid: the cap in closed form. Other smooth pairs have no faces.
+
+#include "contact/faces.h"
+
+#include "contact/clipped.h"
+#include "shape/builtin.h"
+
+enum { OF_A, OF_B, OF_NONE }; // labels of faces
+
+enum { MOST_VERTICES = 2 * PLS_MOST_FACES };
+
+/// A body as half-spaces about an origin nearby: the faces that may have to do with the overlap, those that `d` goes by first.
+typedef struct body
+{
+    double reach; ///< how far it reaches towards the other [m]
+    int faces;    ///< that d goes by
+    int planes;   ///< all
+    pls_half_space plane[PLS_MOST_FACES];
+} body;
+
+/// A wrench, and what it is the gradient of.
+typedef struct push
+{
+    double energy;
+    pls_vec3 force, torque;
+} push;
+
+// ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
+
+static bool has_faces(const pls_shape *s)
+{
+    return s->convex && s->polytope && s->polytope->face_count > 0 && s->polytope->face_count <= PLS_MOST_FACES &&
+           s->polytope->vertex_count <= MOST_VERTICES;
+}
+
+/// A triangle or segment of a wall.
+static bool is_facet(const pls_shape *s)
+{
+    return s->convex && s->polytope && s->polytope->face_count == 0 && s->margin == 0.0 &&
+           s->polytope->vertex_count == (uint32_t)s->dimension;
+}
+
+static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
+
+static pls_half_space half_space(pls_vec3 normal, pls_vec3 through) { return (pls_half_space){normal, pls_dot(normal, through)}; }
+
+/// Faces above `lowest` along n, moved by the margin along n.
+static void take_faces(const pls_posed *p, pls_vec3 origin, pls_vec3 n, const double *height, double lowest, body *out)
+{
+    const pls_polytope *t = p->shape->polytope;
+    const pls_vec3 start = pls_add(pls_sub(p->position, origin), pls_scale(n, p->shape->margin * p->scale));
+    out->faces = 0;
+    for (uint32_t f = 0; f < t->face_count; ++f)
+    {
+        bool near = false;
+        for (uint32_t k = t->face_start[f]; k < t->face_start[f + 1] && !near; ++k) near = height[t->face_vertex[k]] >= lowest;
+        if (!near) continue;
+        const pls_vec3 corner = t->vertex[t->face_vertex[t->face_start[f]]];
+        out->plane[out->faces++] =
+            half_space(pls_posed_turn(p, t->face_normal[f]), pls_add(start, pls_scale(pls_posed_turn(p, corner), p->scale)));
+    }
+    out->planes = out->faces;
+}
+
+/// Heights of all vertices along n, margin included; the largest.
+static double take_heights(const pls_posed *p, pls_vec3 origin, pls_vec3 n, double *height)
+{
+    const pls_polytope *t = p->shape->polytope;
+    const pls_vec3 own = pls_scale(pls_posed_turn_back(p, n), p->scale);
+    const double start = pls_dot(pls_sub(p->position, origin), n) + p->shape->margin * p->scale;
+    double most = -INFINITY;
+    for (uint32_t v = 0; v < t->vertex_count; ++v)
+    {
+        height[v] = start + pls_dot(t->vertex[v], own);
+        most = fmax(most, height[v]);
+    }
+    return most;
+}
+
+/// The prism behind a facet, its front towards `centre`.
+static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, body *out)
+{
+    const pls_polytope *t = p->shape->polytope;
+    const int corners = p->shape->dimension;
+    pls_vec3 x[3] = {{0.0, 0.0, 0.0}}, middle = {0.0, 0.0, 0.0};
+    for (int k = 0; k < corners; ++k)
+    {
+        x[k] = pls_sub(pls_posed_world(p, t->vertex[k]), origin);
+        middle = pls_add(middle, pls_scale(x[k], 1.0 / corners));
+    }
+    if (corners == 2) x[2] = pls_add(x[0], pls_vec(0.0, 0.0, 1.0));
+    pls_vec3 front = pls_unit(pls_cross(pls_sub(x[1], x[0]), pls_sub(x[2], x[0])));
+    if (pls_dot(front, pls_sub(pls_sub(centre, origin), x[0])) < 0.0) front = pls_scale(front, -1.0);
+    out->plane[0] = half_space(front, x[0]);
+    out->faces = out->planes = 1;
+    for (int k = 0; k < corners; ++k)
+    {
+        const pls_vec3 along = corners == 2 ? pls_vec(0.0, 0.0, 1.0) : pls_sub(x[(k + 1) % 3], x[k]);
+        pls_vec3 side = pls_unit(pls_cross(along, front));
+        if (pls_dot(side, pls_sub(middle, x[k])) > 0.0) side = pls_scale(side, -1.0);
+        out->plane[out->planes++] = half_space(side, x[k]);
+    }
+}
+
+// ---- the overlap --------------------------------------------------------------------------------------------------------------------------------------------
+
+/// A block about the overlap, which lies between -b->reach and a->reach along n and in the smaller body.
+static void make_block(const pls_posed *a, const pls_posed *b, pls_vec3 origin, pls_vec3 n, double low, double high, pls_clipped *out)
+{
+    const pls_posed *small = a->size <= b->size ? a : b;
+    const bool flat = small->shape->dimension == 2;
+    const double apart = high - low; // beyond on both sides, so that the block's faces are nobody's
+    pls_vec3 axis[3] = {n, pls_vec(-n.y, n.x, 0.0), pls_vec(0.0, 0.0, 1.0)};
+    if (!flat)
+    {
+        axis[1] = pls_unit(fabs(n.x) < fabs(n.y) ? pls_vec(0.0, n.z, -n.y) : pls_vec(-n.z, 0.0, n.x));
+        axis[2] = pls_cross(n, axis[1]);
+    }
+    const pls_vec3 centre = pls_sub(centre_of(small), origin);
+    const pls_vec3 middle = pls_add(centre, pls_scale(n, 0.5 * (low + high) - pls_dot(centre, n)));
+    const double half[3] = {1.5 * apart, 1.01 * small->size, flat ? 0.5 : 1.01 * small->size};
+    pls_clipped_block(out, middle, axis, half, OF_NONE);
+}
+
+static void cut_by(pls_clipped *c, const body *s, uint8_t label)
+{
+    for (int f = 0; f < s->planes && c->count > 0; ++f) pls_clip(c, &s->plane[f], label);
+}
+
+/// Faces that some point of P may be nearest to: those less deep somewhere than every face is at the most.
+static int faces_about(const body *s, const pls_clipped *P, int *list)
+{
+    double least[PLS_MOST_FACES], deepest = INFINITY;
+    for (int f = 0; f < s->faces; ++f)
+    {
+        double low = INFINITY, high = -INFINITY;
+        for (int v = 0; v < P->count; ++v)
+        {
+            const double d = s->plane[f].offset - pls_dot(s->plane[f].normal, P->x[v]);
+            low = fmin(low, d), high = fmax(high, d);
+        }
+        least[f] = low;
+        deepest = fmin(deepest, high);
+    }
+    int count = 0;
+    for (int f = 0; f < s->faces; ++f)
+        if (least[f] < deepest) list[count++] = f;
+    return count;
+}
+
+static void add_cell(push *sum, const pls_half_space *h, const pls_clipped_measure *m, double weight)
+{
+    const pls_vec3 moment = pls_cross(m->first, h->normal);
+    sum->energy += fabs(weight) * (h->offset * m->volume - pls_dot(h->normal, m->first));
+    sum->force = pls_add(sum->force, pls_scale(h->normal, weight * m->volume));
+    sum->torque = pls_add(sum->torque, pls_scale(moment, weight));
+}
+
+/// Add |weight| times the integral of d, and what pushes B: along the normals of A's faces (weight > 0), against those of B's.
+static void add_cells(push *sum, const body *s, const pls_clipped *P, const pls_clipped_measure *whole, double weight)
+{
+    int list[PLS_MOST_FACES], count = faces_about(s, P, list);
+    if (count == 1)
+    {
+        add_cell(sum, &s->plane[list[0]], whole, weight);
+        return;
+    }
+    for (int i = 0; i < count; ++i)
+    {
+        pls_clipped cell;
+        const pls_half_space *f = &s->plane[list[i]];
+        pls_clipped_copy(&cell, P);
+        for (int j = 0; j < count && cell.count > 0; ++j)
+        {
+            if (j == i) continue;
+            const pls_half_space *g = &s->plane[list[j]];
+            const pls_half_space nearer = {pls_sub(g->normal, f->normal), g->offset - f->offset};
+            pls_clip(&cell, &nearer, OF_NONE);
+        }
+        if (cell.count == 0) continue;
+        pls_clipped_measure m;
+        pls_clipped_measure_of(&cell, &m);
+        add_cell(sum, f, &m, weight);
+    }
+}
+
+// ---- the laws -----------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Nothing overlaps, or less than numbers tell.
+static void no_touch(const pls_depth *depth, pls_touch *out)
+{
+    *out = (pls_touch){.delta = fmin(depth->delta, 0.0),
+                       .normal = depth->normal,
+                       .point = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5),
+                       .weight = 0.0,
+                       .energy_delta = 0.0,
+                       .depth = depth->delta};
+}
+
+/// The wrench's line, at its point nearest to `middle`.
+static pls_vec3 on_line(const push *p, pls_vec3 middle)
+{
+    const pls_vec3 torque = pls_sub(p->torque, pls_cross(middle, p->force));
+    return pls_add(middle, pls_scale(pls_cross(p->force, torque), 1.0 / pls_dot(p->force, p->force)));
+}
+
+/// Energy kn W / A0.
+static void volume_law(const push *w, const pls_clipped_measure *P, double A0, pls_vec3 *point, pls_touch *out)
+{
+    const double length = pls_length(w->force);
+    out->normal = pls_scale(w->force, 1.0 / length);
+    out->delta = length / A0;
+    out->weight = fabs(pls_dot(P->area[OF_A], out->normal)) / A0;
+    out->energy_delta = sqrt(2.0 * w->energy / A0);
+    *point = on_line(w, pls_scale(P->first, 1.0 / P->volume));
+}
+
+/// Energy kn delta^2 / 2, delta = 2 W / V; -dV/dx of B is the area of A's surface in B.
+static void manifold_law(const push *w, const pls_clipped_measure *P, pls_vec3 *point, pls_touch *out)
+{
+    const double V = P->volume, delta = 2.0 * w->energy / V;
+    push slope = {.force = pls_scale(pls_sub(pls_scale(w->force, 2.0), pls_scale(P->area[OF_A], delta)), 1.0 / V),
+                  .torque = pls_scale(pls_sub(pls_scale(w->torque, 2.0), pls_scale(P->area_moment[OF_A], delta)), 1.0 / V)};
+    const double length = pls_length(slope.force);
+    out->normal = pls_scale(slope.force, 1.0 / length);
+    out->delta = delta * length;
+    out->energy_delta = delta;
+    // d2(delta^2/2) as the overlap grows deeper over a fixed area: 1 + 3 q^2, q the variance of t by its squared mean; 1 for parallel faces, at most 7/4.
+    const double q = delta * fabs(pls_dot(P->area[OF_A], out->normal)) / V - 1.0;
+    out->weight = 1.0 + 3.0 * q * q;
+    *point = on_line(&slope, pls_scale(P->first, 1.0 / V));
+}
+
+/// Half-space and ellipsoid: the cap, stretched to that of a unit sphere. `front` out of the half-space.
+static void cap_law(const pls_posed *a, const double half[3], pls_vec3 front, pls_vec3 on_plane, double A0, pls_touch *out)
+{
+    const bool flat = a->shape->dimension == 2;
+    const pls_vec3 own = pls_posed_turn_back(a, front), centre = pls_posed_world(a, pls_vec(0.0, 0.0, 0.0));
+    const double h[3] = {half[0] * a->scale, half[1] * a->scale, flat ? 1.0 : half[2] * a->scale};
+    const pls_vec3 n = pls_vec(h[0] * own.x, h[1] * own.y, h[2] * own.z);
+    const double R = pls_length(n), height = pls_dot(front, pls_sub(centre, on_plane));
+    const double cap = fmin((R - height) / R, 2.0), stretch = h[0] * h[1] * h[2],
+                 rim = 2.0 * cap - cap * cap; // rim: squared radius of its circle
+    double volume = M_PI * cap * cap * (3.0 - cap) / 3.0, middle = 0.75 * (2.0 - cap) * (2.0 - cap) / (3.0 - cap), base = M_PI * rim;
+    if (flat)
+    {
+        const double angle = 2.0 * asin(sqrt(0.5 * cap)), u = angle * angle;
+        volume = angle < 0.02 ? angle * u * (2.0 / 3.0 + u * (-2.0 / 15.0 + u * 4.0 / 315.0)) : angle - 0.5 * sin(2.0 * angle);
+        middle = 2.0 / 3.0 * rim * sqrt(rim) / volume;
+        base = 2.0 * sqrt(rim);
+    }
+    const pls_vec3 deep = pls_vec(-h[0] * n.x / R, -h[1] * n.y / R, flat ? 0.0 : -h[2] * n.z / R);
+    out->normal = pls_scale(front, -1.0);
+    out->delta = volume * stretch / A0;
+    out->weight = base * stretch / R / A0;
+    out->energy_delta = sqrt(2.0 * out->delta * fmax(R * middle - height, 0.0));
+    out->point = pls_add(centre, pls_scale(pls_posed_turn(a, deep), middle));
+}
+
+/// Sphere, disc, ellipsoid, ellipse; their half axes.
+static bool is_ellipsoid(const pls_shape *s, double half[3])
+{
+    for (int k = 0; k < 3; ++k) half[k] = s->ops == &pls_sphere_shape ? s->values[0] : s->values[k];
+    return s->ops == &pls_sphere_shape || s->ops == &pls_ellipsoid_shape;
+}
+
+// ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
+
+static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
+{
+    const bool plane = b->shape->ops->unbounded, facet = is_facet(b->shape);
+    const pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
+    double height_a[MOST_VERTICES], height_b[MOST_VERTICES];
+    pls_vec3 n = depth->normal;
+    body A, B;
+    if (plane)
+    {
+        B.plane[0] = half_space(pls_posed_gradient(b, b->position), pls_sub(b->position, origin));
+        B.faces = B.planes = 1;
+    }
+    else if (facet)
+        take_facet(b, origin, centre_of(a), &B);
+    if (plane || facet)
+        n = pls_scale(B.plane[0].normal, -1.0), B.reach = B.plane[0].offset;
+    else
+        B.reach = take_heights(b, origin, pls_scale(n, -1.0), height_b);
+    A.reach = take_heights(a, origin, n, height_a);
+    const double deep = A.reach + B.reach;
+    if (!(deep > 0.0)) return false;
+    take_faces(a, origin, n, height_a, -B.reach - deep, &A);
+    if (!plane && !facet) take_faces(b, origin, pls_scale(n, -1.0), height_b, -A.reach - deep, &B);
+
+    pls_clipped P;
+    make_block(a, b, origin, n, -B.reach, A.reach, &P);
+    cut_by(&P, &A, OF_A);
+    cut_by(&P, &B, OF_B);
+    if (P.count == 0) return false;
+    pls_clipped_measure m;
+    pls_clipped_measure_of(&P, &m);
+    push w = {0};
+    const double share = plane || facet ? 1.0 : 0.5;
+    add_cells(&w, &B, &P, &m, -share);
+    if (share < 1.0) add_cells(&w, &A, &P, &m, 1.0 - share);
+    if (!(m.volume > 0.0) || !(w.energy > 0.0)) return false;
+    pls_vec3 point;
+    if (options->faces == PLS_FACES_VOLUME)
+        volume_law(&w, &m, options->face_area, &point, out);
+    else
+        manifold_law(&w, &m, &point, out);
+    out->point = pls_add(origin, point);
+    return isfinite(out->delta) && out->delta > 0.0;
+}
+
+bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
+{
+    double half[3];
+    const bool plane = b->shape->ops->unbounded, wall = plane || is_facet(b->shape);
+    const bool faces = has_faces(a->shape) && (wall || has_faces(b->shape));
+    const bool cap = plane && options->faces == PLS_FACES_VOLUME && is_ellipsoid(a->shape, half);
+    if (options->faces == PLS_FACES_POINT || (!faces && !cap)) return false;
+    if (cap)
+    {
+        if (depth->delta <= 0.0)
+            no_touch(depth, out);
+        else
+            cap_law(a, half, pls_posed_gradient(b, b->position), b->position, options->face_area, out);
+    }
+    else if ((depth->delta <= 0.0 && !is_facet(b->shape)) || !overlap_law(a, b, depth, options, out))
+        no_touch(depth, out);
+    out->depth = depth->delta;
+    return true;
+}

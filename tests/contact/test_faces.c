@@ -1,0 +1,359 @@
+// Laws of faces: volumes and energies against closed forms and Monte Carlo on the SDFs, forces against the gradient of the energy, and what collisions keep of it.
+
+#include "contact/faces.h"
+#include "shape/builtin.h"
+#include "support/solids.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+static pls_touch touch_of(const pls_posed *a, const pls_posed *b, pls_faces faces, double area)
+{
+    const pls_narrow_options options = solids_options(faces, area);
+    const pls_depth depth = solids_depth(a, b, NULL);
+    pls_touch t = {0};
+    assert_true(pls_faces_touch(a, b, &depth, &options, &t));
+    return t;
+}
+
+static pls_posed at(const pls_shape *shape, pls_vec3 x, pls_quat q) { return pls_pose(shape, x, q, 1.0); }
+
+static void assert_near(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.15g is not %.15g within %g", value, expected, tolerance);
+}
+
+static void assert_vec_near(pls_vec3 value, pls_vec3 expected, double tolerance)
+{
+    if (!(pls_length(pls_sub(value, expected)) <= tolerance))
+        fail_msg("(%.12g, %.12g, %.12g) is not (%.12g, %.12g, %.12g) within %g", value.x, value.y, value.z, expected.x, expected.y,
+                 expected.z, tolerance);
+}
+
+// ---- known overlaps -----------------------------------------------------------------------------------------------------------------------------------------
+
+/// Flat: V = 4 h_x h_y d, energy delta = sqrt(V d / A0). On an edge: a prism whose section is a right-angled triangle. On a corner: a tetrahedron.
+static void a_box_on_a_plane_displaces_what_is_below(void **state)
+{
+    (void)state;
+    pls_shape *b = solids_box(3, 0.5, 0.3, 0.4, 0.0), *ground = solids_plane(3);
+    const pls_posed below = at(ground, pls_vec(0, 0, 0), pls_quat_identity());
+    const double A0 = 0.7, d = 0.01;
+    pls_posed p = at(b, pls_vec(2.0, 1.0, 0.4 - d), solids_turn(pls_vec(0, 0, 1), 0.4));
+    pls_touch t = touch_of(&p, &below, PLS_FACES_VOLUME, A0);
+    assert_near(t.delta, 0.6 * d / A0, 1e-15);
+    assert_near(t.weight, 0.6 / A0, 1e-12);
+    assert_near(t.energy_delta, d * sqrt(0.6 / A0), 1e-14);
+    assert_near(t.depth, d, 1e-14);
+    assert_vec_near(t.normal, pls_vec(0, 0, -1), 1e-13);
+    assert_vec_near(t.point, pls_vec(2.0, 1.0, -0.5 * d), 1e-12);
+    t = touch_of(&p, &below, PLS_FACES_MANIFOLD, 0.0);
+    assert_near(t.delta, d, 1e-14);
+    assert_near(t.weight, 1.0, 1e-12);
+    assert_vec_near(t.point, pls_vec(2.0, 1.0, -0.5 * d), 1e-11);
+
+    for (double angle = 0.05; angle < 1.5; angle += 0.2) // edge at x = -0.5, z = -0.4 turned down to depth d
+    {
+        const double c = cos(angle), s = sin(angle), up = d / s, side = d / c; // legs of the triangle along the bottom (x) and the side (z)
+        if (up > 1.0) continue;
+        p = at(b, pls_vec(0.0, 0.0, 0.0), solids_turn(pls_vec(0, 1, 0), -angle));
+        const pls_vec3 edge = pls_sub(pls_posed_world(&p, pls_vec(-0.5, 0, -0.4)), pls_vec(0, 0, -d));
+        p = at(b, pls_scale(edge, -1.0), solids_turn(pls_vec(0, 1, 0), -angle));
+        t = touch_of(&p, &below, PLS_FACES_VOLUME, A0);
+        const double area = 0.5 * up * side;
+        assert_near(t.delta, 0.6 * area / A0, 1e-13);
+        assert_near(t.weight, 0.6 * hypot(up, side) / A0, 1e-9);
+        assert_near(t.energy_delta, sqrt(2.0 * 0.6 * area * d / 3.0 / A0), 1e-12);
+        assert_near(t.point.z, -d / 3.0, 1e-12);
+        assert_near(t.point.x, (up * c - side * s) / 3.0, 1e-12);
+        t = touch_of(&p, &below, PLS_FACES_MANIFOLD, 0.0);
+        assert_near(t.energy_delta, 2.0 / 3.0 * d, 1e-12);
+        assert_near(t.delta, 4.0 / 9.0 * d, 1e-11);
+        assert_near(t.point.x, 0.0, 1e-9); // at the edge
+    }
+    pls_shape_free(b);
+    pls_shape_free(ground);
+}
+
+static void a_tetrahedrons_corner_in_a_plane_and_in_a_box(void **state)
+{
+    (void)state;
+    const pls_vec3 corner[4] = {{0.7, 0, 0.9}, {-0.3, 0.5, 0.9}, {-0.4, -0.6, 0.9}, {0.1, 0.05, -0.1}};
+    pls_shape *t = solids_hull(3, corner, 4, 0.0), *ground = solids_plane(3), *slab = solids_box(3, 2.0, 2.0, 1.0, 0.0);
+    const double part = 0.05,
+                 volume =
+                     fabs(pls_dot(pls_sub(corner[0], corner[3]), pls_cross(pls_sub(corner[1], corner[3]), pls_sub(corner[2], corner[3])))) /
+                     6.0;
+    const pls_quat q = t->principal; // so that the shape's axes are the world's
+    const pls_vec3 lift = pls_vec(0, 0, 0.1 - part);
+    const pls_posed p = at(t, pls_add(t->mass.centre, lift), q);
+    const pls_posed below = at(ground, pls_vec(0, 0, 0), pls_quat_identity());
+    pls_touch touch = touch_of(&p, &below, PLS_FACES_VOLUME, 1.0);
+    assert_near(touch.delta, volume * part * part * part, 1e-15);
+    assert_near(touch.energy_delta, sqrt(2.0 * touch.delta * part / 4.0), 1e-12); // centroid at a quarter of the height
+    const pls_posed block = at(slab, pls_vec(0, 0, -1.0), pls_quat_identity());
+    touch = touch_of(&p, &below, PLS_FACES_MANIFOLD, 1.0);
+    assert_near(touch.energy_delta, 0.5 * part, 1e-12);
+    assert_near(touch.delta, 0.25 * part, 1e-11);
+    assert_vec_near(pls_sub(touch.point, pls_add(corner[3], lift)), pls_vec(0, 0, touch.point.z - corner[3].z - lift.z), 1e-9);
+    // The box's own share of force and energy are half of the plane's; the tetrahedron's is left to Monte Carlo.
+    touch = touch_of(&p, &block, PLS_FACES_VOLUME, 1.0);
+    assert_true(touch.delta > 0.5 * volume * part * part * part && touch.delta < volume * part * part * part);
+    pls_shape_free(t), pls_shape_free(ground), pls_shape_free(slab);
+}
+
+/// A small box on a large one. What is deeper than s in the small one is (a - 2s)(b - 2s)(d - s), in the large one a b (d - s).
+static void a_box_in_the_middle_of_a_larger_one(void **state)
+{
+    (void)state;
+    pls_shape *small = solids_box(3, 0.3, 0.2, 0.5, 0.0), *large = solids_box(3, 1.0, 1.0, 1.0, 0.0);
+    const double d = 0.02, a = 0.6, b = 0.4;
+    const pls_posed p = at(large, pls_vec(0, 0, -1.0), pls_quat_identity()),
+                    q = at(small, pls_vec(0.1, -0.2, 0.5 - d), solids_turn(pls_vec(0, 0, 1), 0.3));
+    pls_touch t = touch_of(&p, &q, PLS_FACES_VOLUME, 1.0);
+    const double V = a * b * d, flat = 0.5 * a * b * d * d;
+    const double rim = flat - (a + b) * pow(d, 3.0) / 3.0 + pow(d, 4.0) / 3.0; // integral over s from 0 to d
+    assert_near(t.energy_delta, sqrt(flat + rim), 1e-14);
+    // Of the small box's cells the bottom's pushes up: its area at depth s is (a - 2s)(b - 2s), the sides' cancel.
+    const double up = a * b * d - (a + b) * d * d + 4.0 / 3.0 * pow(d, 3.0);
+    assert_near(t.delta, 0.5 * (V + up), 1e-15);
+    assert_vec_near(t.normal, pls_vec(0, 0, 1), 1e-12);
+    assert_vec_near(pls_sub(t.point, q.position), pls_vec(0, 0, t.point.z - q.position.z), 1e-12);
+    t = touch_of(&p, &q, PLS_FACES_MANIFOLD, 0.0);
+    assert_near(t.energy_delta, (flat + rim) / V, 1e-14);
+    pls_shape_free(small), pls_shape_free(large);
+}
+
+static void caps_of_spheres_and_ellipsoids(void **state)
+{
+    (void)state;
+    const double radius[] = {0.5, 0, 0}, half[] = {0.5, 0.3, 0.7};
+    const struct
+    {
+        const pls_shape_ops *ops;
+        int dimension;
+        const double *values;
+    } cases[] = {
+        {&pls_sphere_shape, 3, radius}, {&pls_ellipsoid_shape, 3, half}, {&pls_sphere_shape, 2, radius}, {&pls_ellipsoid_shape, 2, half}};
+    for (size_t k = 0; k < 4; ++k)
+        for (double d = 1e-4; d < 0.3; d *= 4.0)
+        {
+            const int dimension = cases[k].dimension;
+            pls_shape *s = solids_make(cases[k].ops, dimension, &(pls_shape_input){.values = cases[k].values}),
+                      *ground = solids_plane(dimension);
+            const pls_vec3 up = dimension == 2 ? pls_vec(0, 1, 0) : pls_vec(0, 0, 1);
+            pls_posed p = at(s, pls_vec(0, 0, 0), solids_turn(dimension == 2 ? pls_vec(0, 0, 1) : pls_unit(pls_vec(1, 2, 3)), 0.7));
+            const double R = -pls_dot(up, pls_posed_support(&p, pls_scale(up, -1.0)));
+            p.position = pls_scale(up, R - d);
+            const pls_posed below = at(ground, pls_vec(0, 0, 0), pls_quat_identity());
+            const pls_touch t = touch_of(&p, &below, PLS_FACES_VOLUME, 1.0);
+            // Sections of the body: the unit ball's at the same part of the height, stretched. Simpson's rule over sqrt(depth) for the disc.
+            const double stretch =
+                s->ops == &pls_sphere_shape ? pow(0.5, dimension) / R : (dimension == 3 ? 0.5 * 0.3 * 0.7 : 0.5 * 0.3) / R;
+            double V = 0, W = 0;
+            const int steps = 2000;
+            for (int i = 0; i <= steps; ++i)
+            {
+                const double u = (double)i / steps, depth = d * u * u, c = 1.0 - depth / R; // `depth` above the lowest point
+                const double section = stretch * (dimension == 3 ? M_PI * (1 - c * c) : 2.0 * sqrt((1 - c) * (1 + c)));
+                const double w = (i == 0 || i == steps ? 1.0 : i & 1 ? 4.0 : 2.0) / (3.0 * steps) * 2.0 * d * u * section;
+                V += w, W += w * (d - depth);
+            }
+            assert_near(t.delta / V, 1.0, 1e-8);
+            assert_near(t.energy_delta / sqrt(2 * W), 1.0, 1e-8);
+            assert_near(t.depth, d, 1e-12);
+            pls_posed deeper = p;
+            deeper.position = pls_scale(up, R - d - 1e-4 * d);
+            const pls_touch more = touch_of(&deeper, &below, PLS_FACES_VOLUME, 1.0);
+            assert_near((more.delta - t.delta) / (1e-4 * d) / t.weight, 1.0, 1e-3);
+            assert_near(pls_dot(t.point, up), -W / V, 1e-8 * d + 1e-12);
+            const pls_depth depth = solids_depth(&p, &below, NULL);
+            const pls_narrow_options manifold = solids_options(PLS_FACES_MANIFOLD, 1.0);
+            pls_touch none;
+            assert_false(pls_faces_touch(&p, &below, &depth, &manifold, &none));
+            pls_shape_free(s), pls_shape_free(ground);
+        }
+}
+
+// ---- Monte Carlo --------------------------------------------------------------------------------------------------------------------------------------------
+
+typedef struct sampled
+{
+    double V, W;
+    pls_vec3 force, torque; ///< about the origin
+} sampled;
+
+static void common_block(const pls_posed *a, const pls_posed *b, pls_vec3 *low, pls_vec3 *high)
+{
+    const pls_vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double l[3] = {0}, h[3] = {0};
+    for (int k = 0; k < a->shape->dimension; ++k)
+    {
+        const pls_vec3 minus = pls_scale(axis[k], -1.0);
+        l[k] = fmax(pls_dot(axis[k], pls_posed_support(a, minus)), pls_dot(axis[k], pls_posed_support(b, minus)));
+        h[k] = fmin(pls_dot(axis[k], pls_posed_support(a, axis[k])), pls_dot(axis[k], pls_posed_support(b, axis[k])));
+    }
+    *low = pls_vec(l[0], l[1], l[2]), *high = pls_vec(h[0], h[1], h[2]);
+}
+
+/// One random point in each of m^dimension cells of a block; then `low` and `high` are about what overlaps.
+static sampled sample(const pls_posed *a, const pls_posed *b, int m, pls_vec3 *low, pls_vec3 *high)
+{
+    const int dimension = a->shape->dimension, layers = dimension == 3 ? m : 1;
+    const pls_vec3 size = pls_sub(*high, *low);
+    const double cell = size.x / m * size.y / m * (dimension == 3 ? size.z / m : 1.0);
+    sampled s = {0};
+    pls_vec3 l = *high, h = *low;
+    for (int i = 0; i < m; ++i)
+        for (int j = 0; j < m; ++j)
+            for (int k = 0; k < layers; ++k)
+            {
+                pls_vec3 x = pls_vec(low->x + size.x * (i + solids_uniform(0, 1)) / m, low->y + size.y * (j + solids_uniform(0, 1)) / m,
+                                     dimension == 3 ? low->z + size.z * (k + solids_uniform(0, 1)) / m : 0.0);
+                const double da = -pls_posed_sdf(a, x);
+                if (da < 0.0) continue;
+                const double db = -pls_posed_sdf(b, x);
+                if (db < 0.0) continue;
+                l = pls_vec(fmin(l.x, x.x), fmin(l.y, x.y), fmin(l.z, x.z)), h = pls_vec(fmax(h.x, x.x), fmax(h.y, x.y), fmax(h.z, x.z));
+                s.V += cell, s.W += 0.5 * cell * (da + db);
+                const pls_vec3 f = pls_scale(pls_sub(pls_posed_gradient(a, x), pls_posed_gradient(b, x)), 0.5 * cell);
+                s.force = pls_add(s.force, f), s.torque = pls_add(s.torque, pls_cross(x, f));
+            }
+    const pls_vec3 margin = pls_scale(size, 4.0 / m); // thin ends may have been missed
+    *low = pls_sub(l, margin), *high = pls_add(h, margin);
+    return s;
+}
+
+/// A touches B by `depth`, somewhere.
+static void place(const pls_shape *a, const pls_shape *b, double depth, pls_posed *p, pls_posed *q)
+{
+    const int dimension = a->dimension;
+    *p = at(a, pls_vec(0, 0, 0), solids_turn(dimension == 2 ? pls_vec(0, 0, 1) : solids_direction(3), solids_uniform(0, 6)));
+    const pls_quat turn = solids_turn(dimension == 2 ? pls_vec(0, 0, 1) : solids_direction(3), solids_uniform(0, 6));
+    const pls_vec3 n = solids_direction(dimension);
+    double low = 0.0, high = 4.0;
+    for (int k = 0; k < 60; ++k)
+    {
+        const double middle = 0.5 * (low + high);
+        *q = at(b, pls_scale(n, middle), turn);
+        if (solids_depth(p, q, NULL).delta > depth)
+            low = middle;
+        else
+            high = middle;
+    }
+}
+
+static void random_pairs_agree_with_monte_carlo(void **state)
+{
+    (void)state;
+    solids_seed(7);
+    for (int round = 0; round < 12; ++round)
+    {
+        const int dimension = round % 3 == 2 ? 2 : 3;
+        pls_shape *a = round & 1 ? solids_box(dimension, 0.5, 0.4, 0.6, 0.0) : solids_stone(dimension, 20, 0.0),
+                  *b = solids_stone(dimension, 12, 0.0);
+        pls_posed p, q;
+        place(a, b, solids_uniform(0.03, 0.2), &p, &q);
+        pls_vec3 low, high;
+        common_block(&p, &q, &low, &high);
+        sample(&p, &q, dimension == 3 ? 40 : 200, &low, &high);
+        const sampled s = sample(&p, &q, dimension == 3 ? 80 : 800, &low, &high);
+        const pls_touch v = touch_of(&p, &q, PLS_FACES_VOLUME, 1.0), m = touch_of(&p, &q, PLS_FACES_MANIFOLD, 1.0);
+        assert_near(v.energy_delta / sqrt(2 * s.W), 1.0, 5e-3);
+        assert_near(m.energy_delta / (2 * s.W / s.V), 1.0, 5e-3);
+        const double F = pls_length(s.force);
+        assert_near(v.delta / F, 1.0, 5e-3);
+        assert_vec_near(v.normal, pls_scale(s.force, 1 / F), 1e-2);
+        // The line of the force: torque about the point has no part across the force.
+        const pls_vec3 rest = pls_sub(s.torque, pls_cross(v.point, s.force));
+        assert_near(pls_length(pls_cross(rest, v.normal)) / F, 0.0, 2e-3);
+        pls_shape_free(a), pls_shape_free(b);
+    }
+}
+
+// ---- the gradient -------------------------------------------------------------------------------------------------------------------------------------------
+
+static double energy_of(const pls_posed *p, const pls_posed *q, pls_faces faces)
+{
+    const double e = touch_of(p, q, faces, 1.0).energy_delta;
+    return 0.5 * e * e;
+}
+
+/// Moves B.
+static pls_posed moved(const pls_posed *q, pls_vec3 shift, pls_vec3 about, pls_vec3 axis, double angle)
+{
+    pls_posed m = *q;
+    const pls_quat r = solids_turn(axis, angle);
+    m.position = pls_add(pls_add(about, pls_rotate(r, pls_sub(q->position, about))), shift);
+    m.x = pls_rotate(r, q->x), m.y = pls_rotate(r, q->y), m.z = pls_rotate(r, q->z);
+    return m;
+}
+
+/// Force on B against -dU/dx, torque against -dU/d(angle), by central differences; `couple`: of that, what a force at a point cannot give, in depths.
+static double gradient_error(const pls_posed *p, const pls_posed *q, pls_faces faces, double *couple)
+{
+    const pls_touch t = touch_of(p, q, faces, 1.0);
+    const pls_vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, none = {0, 0, 0};
+    const double h = 1e-5 * t.depth, turn = 1e-5 * t.depth;
+    double f[3], g[3];
+    for (int k = 0; k < 3; ++k)
+    {
+        pls_posed more = moved(q, pls_scale(axis[k], h), t.point, axis[k], 0), less = moved(q, pls_scale(axis[k], -h), t.point, axis[k], 0);
+        const bool flat = p->shape->dimension == 2;
+        f[k] = flat && k == 2 ? 0.0 : -(energy_of(p, &more, faces) - energy_of(p, &less, faces)) / (2 * h);
+        more = moved(q, none, t.point, axis[k], turn), less = moved(q, none, t.point, axis[k], -turn);
+        g[k] = flat && k < 2 ? 0.0 : -(energy_of(p, &more, faces) - energy_of(p, &less, faces)) / (2 * turn);
+    }
+    const pls_vec3 F = pls_vec(f[0], f[1], f[2]), G = pls_vec(g[0], g[1], g[2]);
+    *couple = fabs(pls_dot(G, t.normal)) / t.delta / t.depth;
+    return fmax(pls_length(pls_sub(F, pls_scale(t.normal, t.delta))), pls_length(pls_sub(G, pls_scale(t.normal, pls_dot(G, t.normal))))) /
+           t.delta;
+}
+
+static void forces_are_the_gradient_of_the_energy(void **state)
+{
+    (void)state;
+    solids_seed(11);
+    const pls_faces laws[2] = {PLS_FACES_VOLUME, PLS_FACES_MANIFOLD};
+    for (int law = 0; law < 2; ++law)
+        for (int kind = 0; kind < 6; ++kind)
+        {
+            double worst = 0.0, couples = 0.0;
+            for (int round = 0; round < 20; ++round)
+            {
+                const int dimension = kind == 4 || kind == 5 ? 2 : 3;
+                pls_shape *a =
+                    kind == 0 || kind == 2 || kind == 4 ? solids_box(dimension, 0.5, 0.4, 0.6, 0.0) : solids_stone(dimension, 24, 0.0);
+                pls_shape *b = kind == 3   ? solids_plane(3)
+                               : kind == 0 ? solids_box(3, 0.6, 0.3, 0.4, 0.0)
+                                           : solids_stone(dimension, 16, 0.0);
+                pls_posed p, q;
+                place(a, b, pow(10.0, solids_uniform(-3.5, -1.5)), &p, &q);
+                double couple = 0.0;
+                worst = fmax(worst, gradient_error(&p, &q, laws[law], &couple));
+                couples = fmax(couples, couple);
+                pls_shape_free(a), pls_shape_free(b);
+            }
+            print_message("%s, kind %d: force off by %.1e at most; couple left out %.2f depths\n", law ? "manifold" : "volume", kind, worst,
+                          couples);
+            assert_true(worst < 1e-4);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_box_on_a_plane_displaces_what_is_below), cmocka_unit_test(a_tetrahedrons_corner_in_a_plane_and_in_a_box),
+        cmocka_unit_test(a_box_in_the_middle_of_a_larger_one),      cmocka_unit_test(caps_of_spheres_and_ellipsoids),
+        cmocka_unit_test(random_pairs_agree_with_monte_carlo),      cmocka_unit_test(forces_are_the_gradient_of_the_energy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

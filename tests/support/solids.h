@@ -1,0 +1,28 @@
+// solids.h -- shapes, poses and depths for tests of contact. What cannot be made fails the test.
+#ifndef PLS_TEST_SOLIDS_H
+#define PLS_TEST_SOLIDS_H
+
+#include "contact/convex.h"
+#include "contact/narrow_phase.h"
+
+/// One stream of random numbers for the whole program.
+void solids_seed(uint64_t seed);
+double solids_uniform(double low, double high);
+pls_vec3 solids_direction(int dimension);
+/// By `angle` about the unit vector `axis`.
+pls_quat solids_turn(pls_vec3 axis, double angle);
+/// The least rotation that takes unit a to unit b.
+pls_quat solids_turn_to(pls_vec3 a, pls_vec3 b);
+
+pls_shape *solids_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input);
+pls_shape *solids_box(int dimension, double x, double y, double z, double rounding);
+pls_shape *solids_plane(int dimension);
+pls_shape *solids_hull(int dimension, const pls_vec3 *points, size_t count, double rounding);
+/// The hull of random points of an ellipsoid about the origin, of half axes 0.4 to 0.6.
+pls_shape *solids_stone(int dimension, int count, double rounding);
+
+pls_narrow_options solids_options(pls_faces faces, double area);
+/// Penetration depth; `state` may be null.
+pls_depth solids_depth(const pls_posed *a, const pls_posed *b, pls_pair_state *state);
+
+#endif
