@@ -24,6 +24,7 @@ typedef struct pls_touch
     double weight;       ///< d(delta)/d(approach): 1 but for the volume law (A/A0)
     double energy_delta; ///< overlap at which a linear spring holds the energy of the contact; `delta` but for the volume law [m]
     double depth;        ///< penetration depth, for guards [m]
+    double twist;        ///< couple about the normal that the laws of faces add, on B, by the normal force; on A the opposite; else 0 [m]
 } pls_touch;
 
 /// What queries cost, for summary.json. One per thread, added up.

@@ -44,8 +44,12 @@ void moving_body_kick(moving_body *body, pls_vec3 force, pls_vec3 point, double 
 {
     if (body->fixed) return;
     body->v = pls_add(body->v, pls_scale(force, time / body->mass));
-    pls_vec3 torque = pls_cross(pls_sub(point, body->x), force);
-    body->momentum = pls_add(body->momentum, pls_scale(pls_rotate_back(body->q, torque), time));
+    moving_body_twist(body, pls_cross(pls_sub(point, body->x), force), time);
+}
+
+void moving_body_twist(moving_body *body, pls_vec3 couple, double time)
+{
+    if (!body->fixed) body->momentum = pls_add(body->momentum, pls_scale(pls_rotate_back(body->q, couple), time));
 }
 
 /// About one principal axis.

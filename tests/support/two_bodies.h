@@ -27,6 +27,8 @@ double moving_body_energy(const moving_body *body);
 
 /// A force at a point of the world acts for a time. Fixed bodies stay.
 void moving_body_kick(moving_body *body, pls_vec3 force, pls_vec3 point, double time);
+/// A couple, in the world.
+void moving_body_twist(moving_body *body, pls_vec3 couple, double time);
 /// Free flight: exact but for the rotation, which is split into turns about the principal axes (second order, symplectic, |q| = 1).
 void moving_body_drift(moving_body *body, double time);
 
