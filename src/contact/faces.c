@@ -50,17 +50,16 @@ typedef struct push
 
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
-static bool has_faces(const pls_shape *s)
-{
-    return s->convex && s->polytope && s->polytope->face_count > 0 && s->polytope->face_count <= PLS_MOST_FACES &&
-           s->polytope->vertex_count <= MOST_VERTICES;
-}
-
-/// A triangle or segment of a wall.
+/// A triangle or segment of a wall: two faces back to back.
 static bool is_facet(const pls_shape *s)
 {
-    return s->convex && s->polytope && s->polytope->face_count == 0 && s->margin == 0.0 &&
-           s->polytope->vertex_count == (uint32_t)s->dimension;
+    return s->convex && s->polytope && s->polytope->face_count == 2 && s->polytope->vertex_count == (uint32_t)s->dimension;
+}
+
+static bool has_faces(const pls_shape *s)
+{
+    return s->convex && s->polytope && s->polytope->face_count > 2 && s->polytope->face_count <= PLS_MOST_FACES &&
+           s->polytope->vertex_count <= MOST_VERTICES;
 }
 
 static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
@@ -100,7 +99,7 @@ static double take_heights(const pls_posed *p, pls_vec3 origin, pls_vec3 n, doub
     return most;
 }
 
-/// The prism behind a facet, its front towards `centre`.
+/// The prism behind a facet, its front towards `centre`, its margin in front.
 static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, body *out)
 {
     const pls_polytope *t = p->shape->polytope;
@@ -114,7 +113,7 @@ static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, bod
     if (corners == 2) x[2] = pls_add(x[0], pls_vec(0.0, 0.0, 1.0));
     pls_vec3 front = pls_unit(pls_cross(pls_sub(x[1], x[0]), pls_sub(x[2], x[0])));
     if (pls_dot(front, pls_sub(pls_sub(centre, origin), x[0])) < 0.0) front = pls_scale(front, -1.0);
-    out->plane[0] = half_space(front, x[0]);
+    out->plane[0] = half_space(front, pls_add(x[0], pls_scale(front, p->shape->margin * p->scale)));
     out->faces = out->planes = 1;
     for (int k = 0; k < corners; ++k)
     {
@@ -287,7 +286,7 @@ static void cap_law(const pls_posed *a, const double half[3], pls_vec3 front, pl
 static bool is_ellipsoid(const pls_shape *s, double half[3])
 {
     for (int k = 0; k < 3; ++k) half[k] = s->ops == &pls_sphere_shape ? s->values[0] : s->values[k];
-    return s->ops == &pls_sphere_shape || s->ops == &pls_ellipsoid_shape;
+    return s->ops == &pls_sphere_shape || (s->ops == &pls_ellipsoid_shape && s->margin == 0.0);
 }
 
 // ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------

@@ -15,6 +15,8 @@
 
 #include <cmocka.h>
 
+enum { ROUNDED, SCALE, CLOSED = 1 }; // numbers of a mesh and of a polyline
+
 static pls_touch touch_of(const pls_posed *a, const pls_posed *b, pls_faces faces, double area)
 {
     const pls_narrow_options options = solids_options(faces, area);
@@ -25,6 +27,9 @@ static pls_touch touch_of(const pls_posed *a, const pls_posed *b, pls_faces face
 }
 
 static pls_posed at(const pls_shape *shape, pls_vec3 x, pls_quat q) { return pls_pose(shape, x, q, 1.0); }
+
+/// How deep the lowest point lies.
+static double depth_below(const pls_posed *p, const pls_posed *plane) { return solids_depth(p, plane, NULL).delta; }
 
 static void assert_near(double value, double expected, double tolerance)
 {
@@ -135,7 +140,7 @@ static void a_box_in_the_middle_of_a_larger_one(void **state)
 static void caps_of_spheres_and_ellipsoids(void **state)
 {
     (void)state;
-    const double radius[] = {0.5, 0, 0}, half[] = {0.5, 0.3, 0.7};
+    const double radius[4] = {0.5}, half[4] = {0.5, 0.3, 0.7}; // the rest: no rounding
     const struct
     {
         const pls_shape_ops *ops;
@@ -181,6 +186,89 @@ static void caps_of_spheres_and_ellipsoids(void **state)
             assert_false(pls_faces_touch(&p, &below, &depth, &manifold, &none));
             pls_shape_free(s), pls_shape_free(ground);
         }
+}
+
+// ---- walls of facets ----------------------------------------------------------------------------------------------------------------------------------------
+
+/// Force and torque about the origin, all parts of B together; the law's stiffness and A0 are 1.
+static void add_wrench(const pls_posed *p, const pls_posed *q, pls_vec3 *force, pls_vec3 *torque, double *energy)
+{
+    const pls_touch t = touch_of(p, q, PLS_FACES_VOLUME, 1.0);
+    if (!(t.delta > 0.0)) return;
+    const pls_vec3 f = pls_scale(t.normal, t.delta);
+    *force = pls_add(*force, f);
+    *torque = pls_add(*torque, pls_add(pls_cross(t.point, f), pls_scale(f, t.twist)));
+    *energy += t.energy_delta * t.energy_delta;
+}
+
+/// A floor of pieces, wherever its seams are, also with a rounding, which lifts it.
+static void facets_of_a_floor_add_up_to_a_plane(void **state)
+{
+    (void)state;
+    solids_seed(5);
+    FILE *f = fopen("floor.obj", "w");
+    assert_non_null(f);
+    fputs("v -3 -3 0\nv 3 -2.5 0\nv 2.8 3 0\nv -2.9 3.1 0\nv 0.05 -0.02 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n", f);
+    assert_int_equal(fclose(f), 0);
+    for (int round = 0; round < 20; ++round)
+    {
+        const int dimension = round % 4 == 3 ? 2 : 3;
+        const double lift = round & 1 ? 0.1 : 0.0, mesh_values[] = {[SCALE] = 1.0, [ROUNDED] = lift},
+                     line_values[] = {[ROUNDED] = lift, [CLOSED] = 0.0};
+        const pls_vec3 line[3] = {{-3, 0, 0}, {0.1, 0, 0}, {3, 0, 0}};
+        pls_shape *ground = solids_plane(dimension);
+        pls_shape *floor = dimension == 3 ? solids_make(&pls_mesh_shape, 3, &(pls_shape_input){.values = mesh_values, .path = "floor.obj"})
+                                          : solids_make(&pls_polyline_shape, 2,
+                                                        &(pls_shape_input){.values = line_values, .points = line, .point_count = 3});
+        pls_shape *s = dimension == 2 ? solids_stone(2, 7, 0.0) : round & 2 ? solids_stone(3, 16, 0.05) : solids_box(3, 0.5, 0.3, 0.4, 0.1);
+        const pls_posed below = at(ground, dimension == 2 ? pls_vec(0, lift, 0) : pls_vec(0, 0, lift), pls_quat_identity());
+        pls_posed p = at(s, pls_vec(0, 0, 0), solids_turn(dimension == 2 ? pls_vec(0, 0, 1) : solids_direction(3), solids_uniform(0, 6)));
+        const double height = depth_below(&p, &below);
+        p.position = pls_add(p.position, dimension == 2 ? pls_vec(solids_uniform(-0.2, 0.2), height - 0.05, 0)
+                                                        : pls_vec(solids_uniform(-0.2, 0.2), 0.0, height - 0.05));
+        pls_vec3 F = {0, 0, 0}, T = F, F0 = F, T0 = F;
+        double U = 0.0, U0 = 0.0;
+        add_wrench(&p, &below, &F0, &T0, &U0);
+        size_t count = 0;
+        const pls_shape_part *part = floor->ops->parts(floor, &count);
+        assert_int_equal(count, dimension == 2 ? 2 : 4);
+        for (size_t k = 0; k < count; ++k)
+        {
+            const pls_posed piece = at(part[k].shape, part[k].position, part[k].orientation);
+            add_wrench(&p, &piece, &F, &T, &U);
+        }
+        assert_near(pls_length(F0), pls_length(F), 1e-15);
+        assert_true(pls_length(F0) > 1e-4);
+        assert_vec_near(F, F0, 1e-12);
+        assert_vec_near(T, T0, 1e-12);
+        assert_near(U, U0, 1e-13);
+        pls_shape_free(s), pls_shape_free(floor), pls_shape_free(ground);
+    }
+}
+
+/// For the same shapes always: what has no faces is left to the point law.
+static void pairs_without_faces_are_left_alone(void **state)
+{
+    (void)state;
+    const double radius[4] = {0.5}, capsule[4] = {0.2, 0.5};
+    static pls_vec3 many[400];
+    for (int k = 0; k < 400; ++k) many[k] = pls_scale(solids_direction(3), 0.5);
+    pls_shape *s[] = {solids_make(&pls_sphere_shape, 3, &(pls_shape_input){.values = radius}),
+                      solids_make(&pls_capsule_shape, 3, &(pls_shape_input){.values = capsule}), solids_box(3, 0.5, 0.5, 0.5, 0.1),
+                      solids_hull(3, many, 400, 0.0)};
+    pls_shape *b = solids_box(3, 0.5, 0.5, 0.5, 0.0);
+    assert_true(s[3]->polytope->face_count > PLS_MOST_FACES);
+    for (int k = 0; k < 4; ++k)
+        for (pls_faces faces = PLS_FACES_POINT; faces <= PLS_FACES_VOLUME; ++faces)
+        {
+            const pls_posed p = at(s[k], pls_vec(0, 0, 0), pls_quat_identity()), q = at(b, pls_vec(0.1, 0, 0.9), pls_quat_identity());
+            const pls_depth depth = solids_depth(&p, &q, NULL);
+            const pls_narrow_options options = solids_options(faces, 1.0);
+            pls_touch t;
+            assert_false(pls_faces_touch(&p, &q, &depth, &options, &t));
+        }
+    for (int k = 0; k < 4; ++k) pls_shape_free(s[k]);
+    pls_shape_free(b);
 }
 
 // ---- Monte Carlo --------------------------------------------------------------------------------------------------------------------------------------------
@@ -347,6 +435,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_box_on_a_plane_displaces_what_is_below), cmocka_unit_test(a_tetrahedrons_corner_in_a_plane_and_in_a_box),
         cmocka_unit_test(a_box_in_the_middle_of_a_larger_one),      cmocka_unit_test(caps_of_spheres_and_ellipsoids),
+        cmocka_unit_test(facets_of_a_floor_add_up_to_a_plane),      cmocka_unit_test(pairs_without_faces_are_left_alone),
         cmocka_unit_test(random_pairs_agree_with_monte_carlo),      cmocka_unit_test(forces_are_the_gradient_of_the_energy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
