@@ -10,7 +10,8 @@ enum { PLS_MOST_FACES = 256 };
 
 /// The contact by options->faces (VOLUME or MANIFOLD) of two shapes whose penetration depth is known. Half-spaces, triangles and segments of walls come as B.
 /// False if the pair has no faces to speak of, always for the same pairs of shapes: the point law stands, and nothing is written.
-/// Faces have polyhedra, boxes, polygons (rounded or not), half-spaces, triangles and segments; for VOLUME on a half-space also sphere, disc, ellipsoid and ellipse.
+/// Faces have polyhedra, boxes, polygons and prisms of at most PLS_MOST_FACES faces, rounded ones only against walls: half-spaces, triangles, segments. For VOLUME on a
+/// half-space also sphere, disc, ellipsoid and ellipse.
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out);
 
 #endif
