@@ -98,7 +98,7 @@ static bool follow(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls
         if (!gap.converged) return false;
         if (delta < -PLS_TOUCHING * (a->size + b->size)) return gap_of(a, b, s, d) && d->converged; // F < 0: apart for certain
         if (polytopes && above_face(s, n, delta, a->dimension)) return d->converged = true;
-        bool still = turn < 1e-8 || (change < 1e-9 * L && turn < 1e-5);
+        bool still = turn < 1e-8 || (change < 1e-12 * L && turn < 1e-6); // errors of n count squared
         if (still && (!polytopes || fabs(delta) < PLS_TOUCHING * L)) return d->converged = true;
         beyond = fmin(push * L, fmax(delta, 1e-6 * L)); // less far: further turns, and flatter seen from nearer by smooth sets
     }
