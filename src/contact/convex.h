@@ -27,6 +27,7 @@ typedef struct pls_convex
     double margin;    ///< of rounding [m]
     bool polytope;    ///< the core is one: depths are exact after finitely many support points
     int dimension;    ///< 2 (all z = 0) or 3
+    bool smooth;      ///< nowhere sharp: then no two local minima of a shallow depth lie side by side
 } pls_convex;
 
 typedef struct pls_depth
@@ -91,6 +92,12 @@ pls_gap pls_gjk(const pls_convex *a, const pls_convex *b, pls_vec3 shift, pls_si
 
 /// Depth of cores that overlap, from GJK's last simplex, to `tolerance` [m]. Cores only, no margins; `simplex` becomes the nearest face.
 pls_depth pls_epa(const pls_convex *a, const pls_convex *b, double tolerance, pls_simplex *simplex);
+
+/// Is there a direction with less depth than at `known`, a local minimum of F? True: `known` is one that has, to be followed to its own minimum. False: `known` is the
+/// least, but for local minima closer to it than 1e-3 rad (1e-2 where a set is smooth); `converged` tells whether that is certain to PLS_LEFT_OPEN of the size.
+bool pls_epa_less(const pls_convex *a, const pls_convex *b, double tolerance, pls_depth *known);
+
+#define PLS_LEFT_OPEN 1e-7
 
 /// Distance or depth with nothing known, margins included.
 pls_depth pls_depth_cold(const pls_convex *a, const pls_convex *b);

@@ -6,17 +6,19 @@
 // bound is kept, and is what a polytope that has lost its shape to rounding falls back on.
 
 #include "contact/convex.h"
+#include "contact/horizon.h"
 
 #include <float.h>
 #include <stdint.h>
 
-enum { MOST_POINTS = 192, MOST_FACES = 2 * MOST_POINTS, MOST_EDGES = 3 * MOST_FACES };
+enum { MOST_POINTS = 400, MOST_FACES = 2 * MOST_POINTS };
 
 typedef struct face
 {
     pls_vec3 n; ///< outward, unit
     double d;   ///< of the plane from the origin, signed [m]
     uint16_t at[3];
+    bool closed; ///< not to be looked behind
 } face;
 
 /// The growing polytope; in 2D `face` holds edges of two points.
@@ -108,10 +110,10 @@ static bool add_face(hull *h, int i, int j, int k)
     pls_vec3 p = h->point[i].w, u = pls_sub(h->point[j].w, p), v = pls_sub(h->point[k].w, p);
     pls_vec3 n = h->a->dimension == 2 ? pls_vec(u.y, -u.x, 0.0) : pls_cross(u, v);
     double length = pls_length(n), least = h->a->dimension == 2 ? 1e-15 * h->scale : 1e-14 * pls_length(u) * pls_length(v);
-    f->n = pls_vec(0.0, 0.0, 0.0), f->d = DBL_MAX;
+    f->n = pls_vec(0.0, 0.0, 0.0), f->d = DBL_MAX, f->closed = true;
     if (!(length > least)) return true;
     f->n = pls_scale(n, 1.0 / length);
-    f->d = pls_dot(f->n, p);
+    f->d = pls_dot(f->n, p), f->closed = false;
     return true;
 }
 
@@ -134,65 +136,92 @@ static void first_faces(hull *h)
     add_face(h, 0, 1, 2), add_face(h, 0, 3, 1), add_face(h, 1, 3, 2), add_face(h, 2, 3, 0);
 }
 
-/// An edge seen from both its sides is gone; from one: horizon.
-static void toggle_edge(uint16_t (*edge)[2], int *count, uint16_t i, uint16_t j)
+static bool are_neighbours(const face *f, const face *g)
 {
-    for (int k = 0; k < *count; ++k)
-        if (edge[k][0] == j && edge[k][1] == i)
-        {
-            --*count;
-            edge[k][0] = edge[*count][0], edge[k][1] = edge[*count][1];
-            return;
-        }
-    edge[*count][0] = i, edge[*count][1] = j;
-    ++*count;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (f->at[i] == g->at[(j + 1) % 3] && f->at[(i + 1) % 3] == g->at[j]) return true;
+    return false;
 }
 
-/// Put the point into the polytope in place of the faces it sees. False: no room, or it sees none.
+/// Faces that see p, of those that hang together with `chosen`, which is one. A point that only grazes more faces sees them too if `least` is negative.
+static int find_visible(const hull *h, pls_vec3 p, int chosen, double least, bool *visible)
+{
+    int list[MOST_FACES], count = 0;
+    for (int k = 0; k < h->face_count; ++k) visible[k] = false;
+    list[count++] = chosen, visible[chosen] = true;
+    for (int at = 0; at < count; ++at)
+        for (int k = 0; k < h->face_count; ++k)
+            if (!visible[k] && pls_dot(h->faces[k].n, p) - h->faces[k].d > least * h->scale &&
+                are_neighbours(&h->faces[list[at]], &h->faces[k]))
+                list[count++] = k, visible[k] = true;
+    return count;
+}
+
+/// Put the point into the polytope in place of the faces it sees. False: no room, or the polytope has lost its shape to rounding.
 static bool grow(hull *h, pls_support_pair p, int chosen)
 {
-    static const double least = 1e-14;
-    uint16_t edge[MOST_EDGES][2];
-    int edges = 0;
+    static const double least[3] = {1e-14, -1e-13,
+                                    1e-11}; // which faces in a plane with the point are seen: some choice leaves one closed line
+    bool visible[MOST_FACES];
+    pls_horizon edges;
     if (h->points == MOST_POINTS) return false;
-    int number = h->points++;
+    uint16_t number = (uint16_t)h->points;
+    for (int attempt = 0;; ++attempt)
+    {
+        if (attempt == 3) return false;
+        find_visible(h, p.w, chosen, least[attempt], visible);
+        edges.count = 0;
+        for (int k = 0; k < h->face_count; ++k)
+            for (int c = 0; visible[k] && c < 3; ++c) pls_horizon_add(&edges, h->faces[k].at[c], h->faces[k].at[(c + 1) % 3]);
+        if (pls_horizon_is_loop(&edges)) break;
+    }
+    h->point[h->points++] = p;
+    int kept = 0;
+    for (int k = 0; k < h->face_count; ++k)
+        if (!visible[k]) h->faces[kept++] = h->faces[k];
+    h->face_count = kept;
+    for (int k = 0; k < edges.count; ++k)
+        if (!add_face(h, edges.from[k], edges.to[k], number)) return false;
+    return true;
+}
+
+/// In the plane: of the chain of edges that see the point only the ends stay.
+static bool grow_in_plane(hull *h, pls_support_pair p, int chosen)
+{
+    if (h->points == MOST_POINTS) return false;
+    int number = h->points++, first = h->faces[chosen].at[0], last = h->faces[chosen].at[1];
     h->point[number] = p;
-    for (int k = h->face_count; k-- > 0;)
+    h->faces[chosen] = h->faces[--h->face_count];
+    for (bool more = true; more;)
     {
-        face *f = &h->faces[k];
-        if (k != chosen && !(pls_dot(f->n, p.w) - f->d > least * h->scale)) continue;
-        if (h->a->dimension == 2)
-            toggle_edge(edge, &edges, f->at[0], f->at[0]), edge[edges - 1][1] = f->at[1];
-        else
-            for (int c = 0; c < 3; ++c) toggle_edge(edge, &edges, f->at[c], f->at[(c + 1) % 3]);
-        h->faces[k] = h->faces[--h->face_count];
-    }
-    if (h->a->dimension == 2)
-    {
-        // Of a chain of edges seen only its ends stay: the start that is no edge's end, and the end that is no edge's start.
-        for (int k = 0; k < edges; ++k)
+        more = false;
+        for (int k = 0; k < h->face_count && !more; ++k)
         {
-            bool starts = true, ends = true;
-            for (int m = 0; m < edges; ++m)
-            {
-                if (edge[m][1] == edge[k][0]) starts = false;
-                if (edge[m][0] == edge[k][1]) ends = false;
-            }
-            if (starts && !add_face(h, edge[k][0], number, number)) return false;
-            if (ends && !add_face(h, number, edge[k][1], edge[k][1])) return false;
+            const face *f = &h->faces[k];
+            if (f->at[1] != first && f->at[0] != last) continue;
+            if (!(pls_dot(f->n, p.w) - f->d > 1e-14 * h->scale)) continue;
+            if (f->at[1] == first)
+                first = f->at[0];
+            else
+                last = f->at[1];
+            h->faces[k] = h->faces[--h->face_count];
+            more = true;
         }
-        return edges > 0;
     }
-    for (int k = 0; k < edges; ++k)
-        if (!add_face(h, edge[k][0], edge[k][1], number)) return false;
-    return edges > 0;
+    return first != last && add_face(h, first, number, number) && add_face(h, number, last, last);
+}
+
+static bool put_in(hull *h, pls_support_pair p, int chosen)
+{
+    return h->a->dimension == 2 ? grow_in_plane(h, p, chosen) : grow(h, p, chosen);
 }
 
 static int nearest_face(const hull *h)
 {
     int best = -1;
     for (int k = 0; k < h->face_count; ++k)
-        if (h->faces[k].d < DBL_MAX && (best < 0 || h->faces[k].d < h->faces[best].d)) best = k;
+        if (!h->faces[k].closed && (best < 0 || h->faces[k].d < h->faces[best].d)) best = k;
     return best;
 }
 
@@ -238,12 +267,17 @@ static pls_depth depth_of_flat(hull *h, pls_simplex *s)
     return (pls_depth){.delta = pls_dot(p.w, n), .normal = n, .support_calls = h->support_calls, .converged = true};
 }
 
+static void start(hull *h, const pls_convex *a, const pls_convex *b)
+{
+    h->a = a, h->b = b, h->scale = a->size + b->size;
+    h->points = h->face_count = h->support_calls = 0;
+    h->best = DBL_MAX, h->best_normal = pls_vec(1.0, 0.0, 0.0);
+}
+
 pls_depth pls_epa(const pls_convex *a, const pls_convex *b, double tolerance, pls_simplex *s)
 {
     hull h;
-    h.a = a, h.b = b, h.scale = a->size + b->size;
-    h.points = h.face_count = h.support_calls = 0;
-    h.best = DBL_MAX, h.best_normal = pls_vec(1.0, 0.0, 0.0);
+    start(&h, a, b);
     if (!first_points(&h, s)) return depth_of_flat(&h, s);
     first_faces(&h);
     pls_depth out = {.converged = false};
@@ -259,11 +293,47 @@ pls_depth pls_epa(const pls_convex *a, const pls_convex *b, double tolerance, pl
             out.converged = true;
             break;
         }
-        if (!grow(&h, p, chosen)) break;
+        if (!put_in(&h, p, chosen)) break;
     }
     if (h.best < out.delta || !out.converged) out.normal = h.best_normal, out.delta = h.best;
     s->count = 1, s->point[0] = p, s->weight[0] = 1.0;
     pick_witness(&h, out.normal, out.delta, s);
     out.support_calls = h.support_calls;
     return out;
+}
+
+bool pls_epa_less(const pls_convex *a, const pls_convex *b, double tolerance, pls_depth *known)
+{
+    const double cap = a->smooth || b->smooth ? 1e-2 : 1e-3; // [rad]
+    const double sagitta = 0.1 * cap * cap;
+    hull h;
+    start(&h, a, b);
+    pls_simplex none = {.count = 0};
+    known->converged = false;
+    if (!first_points(&h, &none)) return false;
+    first_faces(&h);
+    int chosen;
+    while ((chosen = nearest_face(&h)) >= 0)
+    {
+        const face f = h.faces[chosen];
+        if (f.d >= known->delta - tolerance) break; // and all others
+        ++known->iterations;
+        pls_support_pair p = ask(&h, f.n);
+        double F = pls_dot(p.w, f.n), off = pls_length(pls_sub(f.n, known->normal));
+        if (F < known->delta - tolerance && off > cap)
+        {
+            known->delta = F, known->normal = f.n;
+            known->support_calls += h.support_calls;
+            return true;
+        }
+        if (off <= cap && F - f.d <= sagitta * h.scale)
+            h.faces[chosen].closed = true; // over the known one
+        else if (!put_in(&h, p, chosen))
+            break;
+    }
+    // When there is no more room: how much less it might be.
+    double left = chosen < 0 ? 0.0 : known->delta - h.faces[chosen].d;
+    known->converged = left <= PLS_LEFT_OPEN * h.scale;
+    known->support_calls += h.support_calls;
+    return false;
 }

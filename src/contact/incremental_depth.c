@@ -98,7 +98,7 @@ static bool follow(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls
         if (!gap.converged) return false;
         if (delta < -PLS_TOUCHING * (a->size + b->size)) return gap_of(a, b, s, d) && d->converged; // F < 0: apart for certain
         if (polytopes && above_face(s, n, delta, a->dimension)) return d->converged = true;
-        bool still = turn < 1e-8 || (change < 1e-9 * L && turn < 1e-5);
+        bool still = turn < 1e-8 || (change < 1e-12 * L && turn < 1e-6); // errors of n count squared
         if (still && (!polytopes || fabs(delta) < PLS_TOUCHING * L)) return d->converged = true;
         beyond = fmin(push * L, fmax(delta, 1e-6 * L)); // less far: further turns, and flatter seen from nearer by smooth sets
     }
@@ -119,35 +119,46 @@ static bool is_least(const pls_convex *a, const pls_convex *b, const pls_simplex
     return (a->sdf && -a->sdf(a->self, on_b) >= enough) || (b->sdf && -b->sdf(b->self, on_a) >= enough);
 }
 
-/// Cores that overlap, by the expanding polytope; smooth ones are refined.
+/// Follow the local minimum from d->normal. False: it was not found, `d` and `s` are as before.
+static bool refine(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
+{
+    pls_simplex t = {.count = 0};
+    pls_depth finer = *d;
+    finer.converged = false;
+    bool found = follow(a, b, &t, &finer) && finer.delta <= d->delta + finely * (a->size + b->size);
+    if (found)
+        *d = finer, *s = t;
+    else
+        d->iterations = finer.iterations, d->support_calls = finer.support_calls;
+    return found;
+}
+
+/// Cores that overlap. Polytopes: the expanding polytope is exact. Else it finds the neighbourhood, following goes to the bottom, and where there is no proof the polytope
+/// is asked whether some other direction has less.
 static void overlap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)
 {
-    double scale = a->size + b->size;
-    bool polytopes = a->polytope && b->polytope;
+    enum { MOST_MINIMA = 12 };
+    const double scale = a->size + b->size;
+    const bool polytopes = a->polytope && b->polytope;
     pls_depth found = pls_epa(a, b, (polytopes ? exact : roughly) * scale, s);
     found.iterations += d->iterations, found.support_calls += d->support_calls;
     *d = found;
     if (polytopes) return;
-    pls_simplex t = {.count = 0};
-    pls_depth finer = found;
-    finer.converged = false;
-    if (follow(a, b, &t, &finer) && is_least(a, b, &t, &finer))
+    for (int k = 0; k < MOST_MINIMA && refine(a, b, s, d); ++k)
     {
-        *d = finer, *s = t;
         d->local = false;
-        return;
+        if (d->delta <= 0.0 || is_least(a, b, s, d)) return;
+        pls_simplex kept = *s;
+        if (!pls_epa_less(a, b, finely * scale, d))
+        {
+            *s = kept;
+            return;
+        }
     }
-    pls_simplex fine = {.count = 0};
-    found = pls_epa(a, b, finely * scale, &fine);
-    found.iterations += finer.iterations, found.support_calls += finer.support_calls;
-    if (finer.converged && finer.delta <= found.delta) fine = t, found.delta = finer.delta, found.normal = finer.normal;
-    *s = fine, *d = found;
-    // The polytope is near, which is best; its nearest face is flat, though, where the set is round.
-    finer = found, t.count = 0;
-    finer.converged = false;
-    if (follow(a, b, &t, &finer) && finer.delta <= found.delta + finely * scale) *d = finer, *s = t;
-    d->converged = found.converged;
-    d->local = false;
+    s->count = 0;
+    found = pls_epa(a, b, finely * scale, s);
+    found.iterations += d->iterations, found.support_calls += d->support_calls;
+    *d = found;
 }
 
 static void from_scratch(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls_depth *d)

@@ -35,6 +35,8 @@ enum winner { NOTHING, INCREMENTAL, POLYTOPES, NEWTON, BFGS, PROJECTIONS, EXPAND
 
 static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
 
+static const double proof = 1e-9; ///< of the smaller radius: by how much a ball that proves a depth may be too small
+
 typedef struct query
 {
     const pls_posed *a, *b;
@@ -73,7 +75,8 @@ static pls_convex convex_of(const pls_posed *p)
                         .size = 2.0 * p->size,
                         .margin = alone ? 0.0 : p->shape->margin * p->scale,
                         .polytope = p->shape->polytope != NULL,
-                        .dimension = p->shape->dimension};
+                        .dimension = p->shape->dimension,
+                        .smooth = p->shape->ops->smooth};
 }
 
 static pls_vec3 unit_or_x(pls_vec3 d)
@@ -295,23 +298,50 @@ static bool bfgs(const query *q, pls_depth *d)
     return true;
 }
 
+static void recall_projections(const query *q, pls_depth *start)
+{
+    const double *s = q->state;
+    *start = (pls_depth){
+        .delta = s[DELTA], .normal = recalled_normal(q), .on_b = pls_posed_world(q->b, pls_vec(s[OWN], s[OWN + 1], s[OWN + 2]))};
+}
+
+static void remember_projections(const query *q, const pls_depth *d)
+{
+    pls_vec3 x = pls_posed_own(q->b, d->on_b);
+    remember(q, PROJECTIONS, d);
+    q->state[OWN] = x.x, q->state[OWN + 1] = x.y, q->state[OWN + 2] = x.z;
+}
+
+/// A ball of radius delta about a witness point lies in the other shape: no direction has less depth.
+static bool is_least(const query *q, const pls_depth *d)
+{
+    double enough = d->delta - proof * fmin(q->a->size, q->b->size);
+    return d->delta <= 0.0 || -pls_posed_sdf(q->a, d->on_b) >= enough || -pls_posed_sdf(q->b, d->on_a) >= enough;
+}
+
 static bool projections(const query *q, const pls_depth *start, pls_depth *d)
 {
     pls_overlap o;
     pls_sdf_depth_projections(q->a, q->b, start->normal, start->delta, start->on_b, PROJECTION_STEPS, &o);
     q->counts->iterations += (uint64_t)o.iterations;
     *d = depth_of(&o);
-    if (!o.converged) return false;
-    remember(q, PROJECTIONS, d);
+    if (!o.converged || !is_least(q, d)) return false;
+    remember_projections(q, d);
     return true;
 }
 
 static pls_depth from_sdfs(const query *q)
 {
-    pls_depth d, other;
-    if (bfgs(q, &d)) return d;
+    pls_depth d, start;
+    if (last_winner(q) == PROJECTIONS)
+    {
+        recall_projections(q, &start);
+        if (projections(q, &start, &d)) return d;
+        ++q->counts->restarts;
+    }
+    if (bfgs(q, &start)) return start;
     ++q->counts->fallbacks;
-    if (projections(q, &d, &other)) return other;
+    if (projections(q, &start, &d)) return d;
     ++q->counts->fallbacks;
     return expand(q);
 }

@@ -13,6 +13,8 @@
 
 #include "contact/polytope_depth.h"
 
+#include "contact/horizon.h"
+
 #include <float.h>
 #include <string.h>
 
@@ -197,51 +199,10 @@ static bool tetrahedron(difference *m, const pls_simplex *s)
     return add_face(m, 0, i, j) && add_face(m, 0, 3, i) && add_face(m, i, 3, j) && add_face(m, j, 3, 0);
 }
 
-/// Directed edges of the faces that are taken away; one that is met both ways lies between two of them.
-typedef struct horizon
-{
-    int count;
-    uint8_t from[3 * MOST_FACES], to[3 * MOST_FACES];
-} horizon;
-
-static void add_edge(horizon *h, uint8_t from, uint8_t to)
-{
-    for (int k = 0; k < h->count; ++k)
-        if (h->from[k] == to && h->to[k] == from)
-        {
-            --h->count;
-            h->from[k] = h->from[h->count], h->to[k] = h->to[h->count];
-            return;
-        }
-    h->from[h->count] = from, h->to[h->count] = to;
-    ++h->count;
-}
-
-/// One closed line, each corner once: else the surface has lost its shape.
-static bool is_one_loop(const horizon *h)
-{
-    uint8_t next[MOST_CORNERS];
-    bool used[MOST_CORNERS] = {false};
-    if (h->count < 3) return false;
-    for (int k = 0; k < h->count; ++k)
-    {
-        if (used[h->from[k]]) return false;
-        used[h->from[k]] = true, next[h->from[k]] = h->to[k];
-    }
-    uint8_t at = h->from[0];
-    for (int k = 1; k <= h->count; ++k)
-    {
-        if (!used[at]) return false;
-        at = next[at];
-        if (at == h->from[0]) return k == h->count;
-    }
-    return false;
-}
-
 /// Put a corner into the surface in place of the faces it sees.
 static bool grow(difference *m, corner c, int chosen)
 {
-    horizon h;
+    pls_horizon h;
     h.count = 0;
     if (m->corner_count == MOST_CORNERS) return false;
     uint8_t number = (uint8_t)m->corner_count;
@@ -249,13 +210,13 @@ static bool grow(difference *m, corner c, int chosen)
     {
         const face f = m->faces[k];
         if (k != chosen && !(pls_dot(f.n, c.w) > f.d + rounding * m->size)) continue;
-        for (int e = 0; e < 3; ++e) add_edge(&h, f.at[e], f.at[e == 2 ? 0 : e + 1]);
+        for (int e = 0; e < 3; ++e) pls_horizon_add(&h, f.at[e], f.at[e == 2 ? 0 : e + 1]);
         m->faces[k] = m->faces[--m->face_count];
     }
-    if (!is_one_loop(&h)) return false;
+    if (!pls_horizon_is_loop(&h)) return false;
     m->corners[m->corner_count++] = c;
     for (int k = 0; k < h.count; ++k)
-        if (!add_face(m, h.from[k], h.to[k], number)) return false;
+        if (!add_face(m, (uint8_t)h.from[k], (uint8_t)h.to[k], number)) return false;
     return true;
 }
 

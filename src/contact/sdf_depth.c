@@ -9,9 +9,9 @@
 
 #include "contact/sdf_depth.h"
 
-static const double flat = 1e-7;     ///< of |grad phi_A + grad phi_B| at which BFGS is done
-static const double pushed = 0.6;    ///< sizes that B is pushed beyond touching
-static const double settled = 1e-11; ///< change of the normal at which projections are done
+static const double flat = 1e-7;    ///< of |grad phi_A + grad phi_B| at which BFGS is done
+static const double pushed = 0.6;   ///< sizes that B is pushed beyond touching
+static const double settled = 1e-8; ///< change of the normal at which projections are done: the depth's error is of second order
 
 typedef struct probe
 {
@@ -93,31 +93,59 @@ void pls_sdf_depth_bfgs(const pls_posed *a, const pls_posed *b, pls_vec3 middle,
     for (int k = 0; k < 6; ++k) state->inverse[k] = m[k];
 }
 
-static pls_vec3 foot(const pls_posed *p, pls_vec3 x)
+/// The nearest point of a shape. False: x is inside.
+static bool foot(const pls_posed *p, pls_vec3 x, pls_vec3 *out)
 {
     double phi = pls_posed_sdf(p, x);
-    return phi > 0.0 ? pls_sub(x, pls_scale(pls_posed_gradient(p, x), phi)) : x;
+    if (!(phi > 0.0)) return false;
+    *out = pls_sub(x, pls_scale(pls_posed_gradient(p, x), phi));
+    return true;
+}
+
+/// The last point and step of the map b -> T(b) that the projections are, for Anderson's mixing (J. ACM 12, 1965) of two.
+typedef struct mixing
+{
+    bool known;
+    pls_vec3 image, residual;
+} mixing;
+
+/// Where to go on from b and its image: on the line through both images, where the residual would be least.
+static pls_vec3 mix(mixing *m, pls_vec3 b, pls_vec3 image)
+{
+    static const double furthest = 50.0; // times the last step
+    pls_vec3 residual = pls_sub(image, b), change = pls_sub(residual, m->residual), next = image;
+    double square = pls_dot(change, change), share = m->known && square > 0.0 ? pls_dot(residual, change) / square : 0.0;
+    if (fabs(share) < furthest) next = pls_sub(image, pls_scale(pls_sub(image, m->image), share));
+    *m = (mixing){.known = true, .image = image, .residual = residual};
+    return next;
 }
 
 void pls_sdf_depth_projections(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double delta, pls_vec3 on_b, int most,
                                pls_overlap *out)
 {
-    double push = pushed * fmin(a->size, b->size);
+    const double size = fmin(a->size, b->size);
+    double push = pushed * size;
+    mixing memory = {.known = false};
+    pls_vec3 from = on_b;
     *out = (pls_overlap){.delta = delta, .normal = normal, .on_b = on_b};
     for (int k = 0; k < most; ++k)
     {
-        pls_vec3 s = pls_scale(out->normal, fmax(out->delta, 0.0) + push);
-        out->on_a = foot(a, pls_add(out->on_b, s));
-        out->on_b = foot(b, pls_sub(out->on_a, s));
-        pls_vec3 n = pls_unit(pls_sub(pls_add(out->on_b, s), out->on_a));
-        double turned = pls_length(pls_sub(n, out->normal)), last = out->delta;
-        out->normal = n;
-        out->delta = pls_dot(n, pls_sub(out->on_a, out->on_b));
         out->iterations = k + 1;
-        if (turned < settled || (turned < 1e-7 && fabs(out->delta - last) < 1e-14 * a->size))
+        pls_vec3 s = pls_scale(out->normal, fmax(out->delta, 0.0) + push), on_a;
+        if (!foot(a, pls_add(from, s), &on_a) || !foot(b, pls_sub(on_a, s), &on_b)) // not yet apart
+        {
+            push += 0.5 * size;
+            continue;
+        }
+        pls_vec3 n = pls_unit(pls_sub(pls_add(on_b, s), on_a));
+        double turned = pls_length(pls_sub(n, out->normal)), last = out->delta;
+        out->on_a = on_a, out->on_b = on_b, out->normal = n;
+        out->delta = pls_dot(n, pls_sub(on_a, on_b));
+        if (turned < settled && fabs(out->delta - last) < 1e-12 * size)
         {
             out->converged = true;
             return;
         }
+        from = mix(&memory, from, on_b);
     }
 }

@@ -55,15 +55,17 @@ static void newton_step(const double h[3], const double g[2], int dimension, dou
         step[0] = -g[0] / fmax(fabs(h[0]), 1e-300);
         return;
     }
-    // Eigenvalues are taken by magnitude, so that the step always goes down.
     double mean = 0.5 * (h[0] + h[2]), half = 0.5 * (h[0] - h[2]), radius = sqrt(half * half + h[1] * h[1]);
     double large = mean + radius, small = mean - radius, least = 1e-8 * (fabs(large) + fabs(small)) + 1e-300;
-    double c = 1.0, s = 0.0; // eigenvector of `large`
-    if (radius > 0.0)
+    if (small > least)
     {
-        double angle = 0.5 * atan2(h[1], half);
-        c = cos(angle), s = sin(angle);
+        double determinant = large * small;
+        step[0] = -(h[2] * g[0] - h[1] * g[1]) / determinant;
+        step[1] = -(h[0] * g[1] - h[1] * g[0]) / determinant;
+        return;
     }
+    // Eigenvalues are taken by magnitude, so that the step always goes down.
+    double angle = radius > 0.0 ? 0.5 * atan2(h[1], half) : 0.0, c = cos(angle), s = sin(angle); // eigenvector of `large`
     double gl = c * g[0] + s * g[1], gs = -s * g[0] + c * g[1];
     double dl = -gl / fmax(fabs(large), least), ds = -gs / fmax(fabs(small), least);
     step[0] = c * dl - s * ds;

@@ -15,9 +15,10 @@
 #include <string.h>
 
 enum {
-    TRIALS = 2000,      ///< pairs of points at which an SDF is tried
-    SUPPORT_TURNS = 40, ///< of the search for a support point
-    CLIMBS = 30         ///< of the search for the furthest point
+    TRIALS = 2000,        ///< pairs of points at which an SDF is tried
+    SUPPORT_TURNS = 40,   ///< of the search for a support point
+    SUPPORT_STRIDES = 60, ///< of each turn
+    CLIMBS = 30           ///< of the search for the furthest point
 };
 static const double steepness = 1e-9;  ///< by which an SDF may be steeper than 1, for round-off
 static const double foot_error = 1e-3; ///< of the size: how far from the surface the foot of a point outside may lie
@@ -67,9 +68,17 @@ static pls_vec3 support_from_sdf(const pls_shape *shape, pls_vec3 n)
     for (int k = 0; k < SUPPORT_TURNS; ++k)
     {
         pls_vec3 next = pls_shape_nearest(shape, pls_add(p, pls_scale(n, t)));
-        double moved = pls_length(pls_sub(next, p));
+        pls_vec3 step = pls_sub(next, p);
         p = next;
-        if (moved < 1e-12 * shape->size) break;
+        if (pls_length(step) < 1e-12 * shape->size) break;
+        // Along a flat side it comes forward by t times the angle only: further steps the same way, longer each time, as long as they lead up.
+        for (int m = 0; m < SUPPORT_STRIDES; ++m)
+        {
+            step = pls_scale(step, 2.0);
+            pls_vec3 far = pls_shape_nearest(shape, pls_add(pls_add(p, step), pls_scale(n, t)));
+            if (!(pls_dot(n, far) > pls_dot(n, p) + 1e-14 * shape->size)) break;
+            p = far;
+        }
     }
     return p;
 }
