@@ -126,16 +126,25 @@ static void start_second(problem *p, const problem *first, const double *state, 
 
 // ---- the answer -----------------------------------------------------------------------------------------------------------------------------------------------
 
-static void answer(const problem *first, const problem *second, double enough, pls_overlap *out)
+static bool is_thin(const pls_posed *p) { return p->shape->ops->wall; }
+
+/// A piece of a wall has no inside to be deep in: the body's point is the foot of the piece's.
+static void from_the_other(problem *p, const problem *other)
 {
-    const double phi = pls_posed_sdf(first->field, first->x) + pls_posed_sdf(second->field, second->x);
+    p->x = foot(p->set, other->x);
+    p->u = pls_scale(other->u, -1.0);
+    p->converged = true;
+}
+
+static void answer(const problem *first, const problem *second, bool overlapping, double enough, pls_overlap *out)
+{
     const pls_vec3 apart = pls_sub(first->x, second->x), middle = pls_scale(pls_add(first->x, second->x), 0.5);
     const double length = pls_length(apart);
     out->on_a = first->x;
     out->on_b = second->x;
     if (length > enough)
     {
-        out->delta = phi < 0.0 ? length : -length;
+        out->delta = overlapping ? length : -length;
         out->normal = pls_scale(apart, 1.0 / out->delta);
         return;
     }
@@ -157,9 +166,13 @@ void pls_admm_depth(const pls_posed *a, const pls_posed *b, double tolerance, do
     solve(&second, step, enough);
     remember(&first, known, state);
     remember(&second, known, state + 3 * VECTORS);
-    answer(&first, &second, enough, out);
     out->iterations = first.iterations > second.iterations ? first.iterations : second.iterations;
+    const double phi_b = pls_posed_sdf(b, first.x), phi_a = pls_posed_sdf(a, second.x);
+    const bool overlapping = is_thin(b) ? phi_a < 0.0 : is_thin(a) ? phi_b < 0.0 : phi_a + phi_b < 0.0;
+    if (overlapping && is_thin(b)) from_the_other(&first, &second);
+    if (overlapping && is_thin(a)) from_the_other(&second, &first);
     // Within the set the least SDF is that of all space: the set holds the field's deepest point.
-    bool on_surfaces = fabs(pls_posed_sdf(a, first.x)) <= enough && fabs(pls_posed_sdf(b, second.x)) <= enough;
+    const bool on_surfaces = fabs(pls_posed_sdf(a, first.x)) <= enough && fabs(pls_posed_sdf(b, second.x)) <= enough;
     out->converged = first.converged && second.converged && on_surfaces;
+    answer(&first, &second, overlapping, enough, out);
 }

@@ -37,6 +37,7 @@ static const example examples[] = {
     {"cylinder", &pls_cylinder_shape, 3, {0.6, 1.5, 0.0}, 0, false},
     {"rounded cylinder", &pls_cylinder_shape, 3, {0.9, 0.8, 0.25}, 0, false},
     {"ellipsoid", &pls_ellipsoid_shape, 3, {0.5, 0.8, 1.3}, 0, true},
+    {"rounded ellipsoid", &pls_ellipsoid_shape, 3, {0.5, 0.8, 1.3, 0.2}, 0, true},
     {"oblate", &pls_ellipsoid_shape, 3, {1.0, 1.0, 0.3}, 0, true},
     {"prolate", &pls_ellipsoid_shape, 3, {0.4, 0.4, 1.0}, 0, true},
     {"ellipse", &pls_ellipsoid_shape, 2, {0.5, 1.7, 1.0}, 0, true},
