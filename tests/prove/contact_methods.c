@@ -118,7 +118,8 @@ typedef struct memory
     pls_pair_state depth;
     double admm[PLS_ADMM_STATE];
     double tolerance;
-    int unsolved; ///< queries that did not converge
+    int unsolved;                    ///< queries that did not converge
+    long done_in[PLS_ADMM_MOST + 1]; ///< queries of overlapping bodies, by iterations
 } memory;
 
 static two_bodies_contact by_depth(const pls_posed *a, const pls_posed *b, void *user)
@@ -138,6 +139,7 @@ static two_bodies_contact by_eq14(const pls_posed *a, const pls_posed *b, void *
     pls_overlap o;
     pls_admm_depth(a, b, m->tolerance, m->admm, &o);
     m->unsolved += !o.converged;
+    if (o.delta > 0.0) ++m->done_in[o.iterations];
     return (two_bodies_contact){o.delta, o.normal, pls_scale(pls_add(o.on_a, o.on_b), 0.5)};
 }
 
@@ -209,6 +211,15 @@ static double quantile(double *values, int count, double part)
     return values[k < count ? k : count - 1];
 }
 
+static int quantile_of_counts(const long *count, double part)
+{
+    long all = 0, sum = 0;
+    int k = 0;
+    for (int i = 0; i <= PLS_ADMM_MOST; ++i) all += count[i];
+    while (k < PLS_ADMM_MOST && (sum += count[k]) <= (long)(part * (double)all)) ++k;
+    return k;
+}
+
 // ---- what is measured of a pair -------------------------------------------------------------------------------------------------------------------------------------
 
 typedef struct figures
@@ -217,10 +228,11 @@ typedef struct figures
     double ratio[2], angle[2]; ///< median, 95th percentile
     int unsolved;              ///< of POSES
     double cold[TOLERANCES][2], warm[TOLERANCES][2];
-    double few[TOLERANCES]; ///< part of warm queries done in 1 or 2 iterations
-    double energy[2][2];    ///< of both methods: median and largest change
-    int lost[2];            ///< queries without a converged answer
-    int thrown;             ///< collisions that had not ended
+    double few[TOLERANCES];          ///< part of warm queries done in 1 or 2 iterations
+    long done_in[PLS_ADMM_MOST + 1]; ///< queries in collisions, to depth_tolerance
+    double energy[2][2];             ///< of both methods: median and largest change
+    int lost[2];                     ///< queries without a converged answer
+    int thrown;                      ///< collisions that had not ended
 } figures;
 
 static void compare_depths(const pls_shape *sa, const pls_shape *sb, uint64_t stream, figures *f)
@@ -333,6 +345,7 @@ static void measure_energy(const pls_shape *sa, const pls_shape *sb, uint64_t st
             memory m = {.tolerance = depth_tolerance};
             double c = fabs(collide(sa, sb, method ? by_eq14 : by_depth, &m, &random));
             f->lost[method] += m.unsolved;
+            for (int i = 0; i <= PLS_ADMM_MOST; ++i) f->done_in[i] += m.done_in[i];
             f->thrown += isnan(c);
             if (!isnan(c)) change[count++] = c;
         }
@@ -391,15 +404,17 @@ static void write_depths(FILE *out, const figures *f)
 
 static void write_iterations(FILE *out, const figures *f)
 {
-    fprintf(out, "| pair | cold, to 1e-3 | 1e-6 | 1e-8 | warm, to 1e-3 | 1e-6 | 1e-8 | warm, in 1-2: 1e-3 | 1e-6 | 1e-8 |\n"
-                 "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+    fprintf(
+        out,
+        "| pair | cold, to 1e-3 | 1e-6 | 1e-8 | warm, to 1e-3 | 1e-6 | 1e-8 | warm, in 1-2: 1e-3 | 1e-6 | 1e-8 | in collisions: 1e-8 |\n"
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     for (int p = 0; p < PAIRS; ++p)
     {
         fprintf(out, "| %s ", f[p].name);
         for (int t = 0; t < TOLERANCES; ++t) fprintf(out, "| %.0f (%.0f) ", f[p].cold[t][0], f[p].cold[t][1]);
         for (int t = 0; t < TOLERANCES; ++t) fprintf(out, "| %.0f (%.0f) ", f[p].warm[t][0], f[p].warm[t][1]);
         for (int t = 0; t < TOLERANCES; ++t) fprintf(out, "| %.0f %% ", 100.0 * f[p].few[t]);
-        fprintf(out, "|\n");
+        fprintf(out, "| %d (%d) |\n", quantile_of_counts(f[p].done_in, 0.5), quantile_of_counts(f[p].done_in, 0.95));
     }
 }
 
