@@ -11,6 +11,9 @@
 // Warm. x and u are remembered in the frame of the body that x belongs to, and so is how far they were from where they had been expected: bodies that move
 // evenly are met a step ahead, also where the contact travels over both.
 //
+// Nearly parallel faces. Where nothing curves the iterates move on evenly, by the tilt of the faces times the step, and would need 1 / tilt of them. So while changes are equal the step
+// is doubled every few iterations (any step has the same solution, and x the same multiplier), and is the first one again as soon as they are not.
+//
 // Parallel faces. The least phi_B is then taken all over a patch of A, and so is phi_A over B: any two points of it would do for eq. 14, with any distance between
 // them. So the second problem starts from the foot of the first one's solution, unless the point remembered is lower.
 
@@ -18,6 +21,9 @@
 #include "shape/proximal.h"
 
 static const double step_of_size = 0.5;  // of the proximal map, in smaller bounding radii
+static const double even_within = 0.02;  // by how much changes differ that count as even, of their length
+static const double longest = 1e4;       // of lengthened steps, in first ones
+enum { EVEN_TURNS = 4 };                 // of these one lengthens the step
 static const double far_expected = 0.05; // a change beyond this many sizes is no motion to go on with
 
 /// The least SDF of `field` over `set`.
@@ -48,9 +54,13 @@ static pls_vec3 proximal(const pls_posed *p, pls_vec3 X, double step)
     return pls_posed_world(p, pls_shape_proximal(p->shape, pls_posed_own(p, X), step / p->scale));
 }
 
-static void solve(problem *p, double step, double enough)
+/// Do the iterates move on evenly? Then a longer step takes them further at once.
+static bool is_even(pls_vec3 change, pls_vec3 last) { return pls_length(pls_sub(change, last)) < even_within * pls_length(last); }
+
+static void solve(problem *p, double shortest, double enough)
 {
-    pls_vec3 z = pls_add(p->x, pls_scale(p->u, step));
+    double step = shortest;
+    pls_vec3 z = pls_add(p->x, pls_scale(p->u, step)), last = pls_vec(0.0, 0.0, 0.0);
     p->converged = false;
     for (p->iterations = 1;; ++p->iterations)
     {
@@ -58,7 +68,16 @@ static void solve(problem *p, double step, double enough)
         pls_vec3 y = proximal(p->field, pls_sub(pls_scale(p->x, 2.0), z), step), change = pls_sub(y, p->x);
         p->converged = pls_length(change) <= enough;
         if (p->converged || p->iterations == PLS_ADMM_MOST) break;
+        const bool even = is_even(change, last);
+        const double longer = !even ? shortest / step : p->iterations % EVEN_TURNS == 0 && step < longest * shortest ? 2.0 : 1.0;
         z = pls_add(z, change);
+        if (longer != 1.0)
+        {
+            pls_vec3 x = nearest_in(p->set, z); // the same for any step along the multiplier
+            z = pls_add(x, pls_scale(pls_sub(z, x), longer));
+            step *= longer;
+        }
+        last = pls_scale(change, longer);
     }
     p->u = pls_scale(pls_sub(z, p->x), 1.0 / step);
 }

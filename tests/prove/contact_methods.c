@@ -133,6 +133,13 @@ static two_bodies_contact by_depth(const pls_posed *a, const pls_posed *b, void 
     return (two_bodies_contact){touch.delta, touch.normal, touch.point};
 }
 
+static two_bodies_contact depth_cold(const pls_posed *a, const pls_posed *b)
+{
+    memory m = {.unsolved = 0};
+    return by_depth(a, b, &m);
+}
+
+/// What is not solved counts as it does in a simulation: by the penetration depth.
 static two_bodies_contact by_eq14(const pls_posed *a, const pls_posed *b, void *user)
 {
     memory *m = user;
@@ -140,13 +147,8 @@ static two_bodies_contact by_eq14(const pls_posed *a, const pls_posed *b, void *
     pls_admm_depth(a, b, m->tolerance, m->admm, &o);
     m->unsolved += !o.converged;
     if (o.delta > 0.0) ++m->done_in[o.iterations];
+    if (!o.converged) return depth_cold(a, b);
     return (two_bodies_contact){o.delta, o.normal, pls_scale(pls_add(o.on_a, o.on_b), 0.5)};
-}
-
-static two_bodies_contact depth_cold(const pls_posed *a, const pls_posed *b)
-{
-    memory m = {.unsolved = 0};
-    return by_depth(a, b, &m);
 }
 
 // ---- poses --------------------------------------------------------------------------------------------------------------------------------------------------------
