@@ -112,43 +112,39 @@ static pls_shape *make(const example *e)
 
 // ---- both methods -----------------------------------------------------------------------------------------------------------------------------------------------
 
-/// What a finder remembers of a pair.
+/// What a method remembers of a pair.
 typedef struct memory
 {
-    pls_pair_state depth;
-    double admm[PLS_ADMM_STATE];
-    double tolerance;
-    int unsolved;                    ///< queries that did not converge
-    long done_in[PLS_ADMM_MOST + 1]; ///< queries of overlapping bodies, by iterations
+    pls_narrow_options options;
+    pls_pair_state state;
+    int unsolved;                    ///< queries that did not converge; those of eq. 14 count as in a simulation, by the penetration depth
+    long done_in[PLS_ADMM_MOST + 1]; ///< queries of overlapping bodies, by iterations of ADMM
 } memory;
 
-static two_bodies_contact by_depth(const pls_posed *a, const pls_posed *b, void *user)
+static memory memory_of(pls_solver solver)
+{
+    memory m = {.options = pls_default_narrow_options()};
+    m.options.solver = solver;
+    m.options.tolerance = depth_tolerance;
+    return m;
+}
+
+static two_bodies_contact find(const pls_posed *a, const pls_posed *b, void *user)
 {
     memory *m = user;
-    const pls_narrow_options options = pls_default_narrow_options();
     pls_narrow_counts counts = {0};
     pls_touch touch;
-    pls_narrow_phase(a, b, &options, &m->depth, &touch, &counts);
-    m->unsolved += counts.failures > 0;
+    pls_narrow_phase(a, b, &m->options, &m->state, &touch, &counts);
+    const bool admm = m->options.solver == PLS_SOLVER_ADMM;
+    m->unsolved += counts.failures > 0 || (admm && counts.fallbacks > 0);
+    if (admm && touch.delta > 0.0) ++m->done_in[counts.iterations < PLS_ADMM_MOST ? counts.iterations : PLS_ADMM_MOST];
     return (two_bodies_contact){touch.delta, touch.normal, touch.point};
 }
 
 static two_bodies_contact depth_cold(const pls_posed *a, const pls_posed *b)
 {
-    memory m = {.unsolved = 0};
-    return by_depth(a, b, &m);
-}
-
-/// What is not solved counts as it does in a simulation: by the penetration depth.
-static two_bodies_contact by_eq14(const pls_posed *a, const pls_posed *b, void *user)
-{
-    memory *m = user;
-    pls_overlap o;
-    pls_admm_depth(a, b, m->tolerance, m->admm, &o);
-    m->unsolved += !o.converged;
-    if (o.delta > 0.0) ++m->done_in[o.iterations];
-    if (!o.converged) return depth_cold(a, b);
-    return (two_bodies_contact){o.delta, o.normal, pls_scale(pls_add(o.on_a, o.on_b), 0.5)};
+    memory m = memory_of(PLS_SOLVER_DEPTH);
+    return find(a, b, &m);
 }
 
 // ---- poses --------------------------------------------------------------------------------------------------------------------------------------------------------
@@ -304,7 +300,7 @@ static void count_iterations(const pls_shape *sa, const pls_shape *sb, uint64_t 
 
 /// B comes at A with speed 1, both with spins that carry their surfaces at up to half of it; off the centre by up to a quarter of the size. Relative change of energy
 /// when they have parted; NaN if they have not.
-static double collide(const pls_shape *sa, const pls_shape *sb, two_bodies_finder *find, memory *m, pls_random *random)
+static double collide(const pls_shape *sa, const pls_shape *sb, memory *m, pls_random *random)
 {
     two_bodies pair = {.find = find, .user = m};
     two_bodies_body *a = &pair.body[0], *b = &pair.body[1];
@@ -344,8 +340,8 @@ static void measure_energy(const pls_shape *sa, const pls_shape *sb, uint64_t st
         for (int k = 0; k < collisions; ++k)
         {
             pls_random random = pls_random_stream(3, 1000 * stream + (uint64_t)k, PLS_FOR_USER); // the same collisions
-            memory m = {.tolerance = depth_tolerance};
-            double c = fabs(collide(sa, sb, method ? by_eq14 : by_depth, &m, &random));
+            memory m = memory_of(method ? PLS_SOLVER_ADMM : PLS_SOLVER_DEPTH);
+            double c = fabs(collide(sa, sb, &m, &random));
             f->lost[method] += m.unsolved;
             for (int i = 0; i <= PLS_ADMM_MOST; ++i) f->done_in[i] += m.done_in[i];
             f->thrown += isnan(c);
