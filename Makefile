@@ -27,7 +27,7 @@ run: build ## run the main example and make its plot
 check: build ## run all tests
 	@ctest --test-dir $(BUILD) --output-on-failure --no-label-summary -j $(JOBS)
 
-prove: build ## run the long verification campaign, which writes docs/verification.md
+prove: build ## run the long verification campaign, which writes docs/verification.md and docs/contact-detection.md
 	@bash tests/prove/prove.sh
 
 bench: build ## run the benchmarks, which write docs/performance.md

@@ -11,6 +11,9 @@
 // Warm. x and u are remembered in the frame of the body that x belongs to, and so is how far they were from where they had been expected: bodies that move
 // evenly are met a step ahead, also where the contact travels over both.
 //
+// Nearly parallel faces. Where nothing curves the iterates move on evenly, by the tilt of the faces times the step, and would need 1 / tilt of them. So while changes are equal the step
+// is doubled every few iterations (any step has the same solution, and x the same multiplier), and is the first one again as soon as they are not.
+//
 // Parallel faces. The least phi_B is then taken all over a patch of A, and so is phi_A over B: any two points of it would do for eq. 14, with any distance between
 // them. So the second problem starts from the foot of the first one's solution, unless the point remembered is lower.
 
@@ -18,6 +21,9 @@
 #include "shape/proximal.h"
 
 static const double step_of_size = 0.5;  // of the proximal map, in smaller bounding radii
+static const double even_within = 0.02;  // by how much changes differ that count as even, of their length
+static const double longest = 1e4;       // of lengthened steps, in first ones
+enum { EVEN_TURNS = 4 };                 // of these one lengthens the step
 static const double far_expected = 0.05; // a change beyond this many sizes is no motion to go on with
 
 /// The least SDF of `field` over `set`.
@@ -48,9 +54,13 @@ static pls_vec3 proximal(const pls_posed *p, pls_vec3 X, double step)
     return pls_posed_world(p, pls_shape_proximal(p->shape, pls_posed_own(p, X), step / p->scale));
 }
 
-static void solve(problem *p, double step, double enough)
+/// Do the iterates move on evenly? Then a longer step takes them further at once.
+static bool is_even(pls_vec3 change, pls_vec3 last) { return pls_length(pls_sub(change, last)) < even_within * pls_length(last); }
+
+static void solve(problem *p, double shortest, double enough)
 {
-    pls_vec3 z = pls_add(p->x, pls_scale(p->u, step));
+    double step = shortest;
+    pls_vec3 z = pls_add(p->x, pls_scale(p->u, step)), last = pls_vec(0.0, 0.0, 0.0);
     p->converged = false;
     for (p->iterations = 1;; ++p->iterations)
     {
@@ -58,7 +68,16 @@ static void solve(problem *p, double step, double enough)
         pls_vec3 y = proximal(p->field, pls_sub(pls_scale(p->x, 2.0), z), step), change = pls_sub(y, p->x);
         p->converged = pls_length(change) <= enough;
         if (p->converged || p->iterations == PLS_ADMM_MOST) break;
+        const bool even = is_even(change, last);
+        const double longer = !even ? shortest / step : p->iterations % EVEN_TURNS == 0 && step < longest * shortest ? 2.0 : 1.0;
         z = pls_add(z, change);
+        if (longer != 1.0)
+        {
+            pls_vec3 x = nearest_in(p->set, z); // the same for any step along the multiplier
+            z = pls_add(x, pls_scale(pls_sub(z, x), longer));
+            step *= longer;
+        }
+        last = pls_scale(change, longer);
     }
     p->u = pls_scale(pls_sub(z, p->x), 1.0 / step);
 }
@@ -126,16 +145,25 @@ static void start_second(problem *p, const problem *first, const double *state, 
 
 // ---- the answer -----------------------------------------------------------------------------------------------------------------------------------------------
 
-static void answer(const problem *first, const problem *second, double enough, pls_overlap *out)
+static bool is_thin(const pls_posed *p) { return p->shape->ops->wall; }
+
+/// A piece of a wall has no inside to be deep in: the body's point is the foot of the piece's.
+static void from_the_other(problem *p, const problem *other)
 {
-    const double phi = pls_posed_sdf(first->field, first->x) + pls_posed_sdf(second->field, second->x);
+    p->x = foot(p->set, other->x);
+    p->u = pls_scale(other->u, -1.0);
+    p->converged = true;
+}
+
+static void answer(const problem *first, const problem *second, bool overlapping, double enough, pls_overlap *out)
+{
     const pls_vec3 apart = pls_sub(first->x, second->x), middle = pls_scale(pls_add(first->x, second->x), 0.5);
     const double length = pls_length(apart);
     out->on_a = first->x;
     out->on_b = second->x;
     if (length > enough)
     {
-        out->delta = phi < 0.0 ? length : -length;
+        out->delta = overlapping ? length : -length;
         out->normal = pls_scale(apart, 1.0 / out->delta);
         return;
     }
@@ -157,9 +185,13 @@ void pls_admm_depth(const pls_posed *a, const pls_posed *b, double tolerance, do
     solve(&second, step, enough);
     remember(&first, known, state);
     remember(&second, known, state + 3 * VECTORS);
-    answer(&first, &second, enough, out);
     out->iterations = first.iterations > second.iterations ? first.iterations : second.iterations;
+    const double phi_b = pls_posed_sdf(b, first.x), phi_a = pls_posed_sdf(a, second.x);
+    const bool overlapping = is_thin(b) ? phi_a < 0.0 : is_thin(a) ? phi_b < 0.0 : phi_a + phi_b < 0.0;
+    if (overlapping && is_thin(b)) from_the_other(&first, &second);
+    if (overlapping && is_thin(a)) from_the_other(&second, &first);
     // Within the set the least SDF is that of all space: the set holds the field's deepest point.
-    bool on_surfaces = fabs(pls_posed_sdf(a, first.x)) <= enough && fabs(pls_posed_sdf(b, second.x)) <= enough;
+    const bool on_surfaces = fabs(pls_posed_sdf(a, first.x)) <= enough && fabs(pls_posed_sdf(b, second.x)) <= enough;
     out->converged = first.converged && second.converged && on_surfaces;
+    answer(&first, &second, overlapping, enough, out);
 }

@@ -17,7 +17,9 @@
 
 #include "contact/narrow_phase.h"
 
+#include "contact/admm.h"
 #include "contact/convex.h"
+#include "contact/faces.h"
 #include "contact/polytope_depth.h"
 #include "contact/sdf_depth.h"
 
@@ -439,6 +441,17 @@ static solver *const table[KINDS][KINDS] = {
 };
 // clang-format on
 
+/// P1 eq. 14, of convex shapes. False: no solution; then the depth, from nothing, as the state is not the depth's.
+static bool by_admm(const query *q, double tolerance, pls_depth *d)
+{
+    pls_overlap o;
+    pls_admm_depth(q->a, q->b, tolerance, q->state + ADMM, &o);
+    q->counts->iterations += (uint64_t)o.iterations;
+    q->counts->fallbacks += !o.converged;
+    *d = depth_of(&o);
+    return o.converged;
+}
+
 static void as_touch(const pls_depth *d, pls_touch *out)
 {
     *out = (pls_touch){.delta = d->delta,
@@ -452,11 +465,13 @@ static void as_touch(const pls_depth *d, pls_touch *out)
 void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state, pls_touch *out,
                       pls_narrow_counts *counts)
 {
-    const query q = {a, b, state->value, counts};
+    const bool admm = options->solver == PLS_SOLVER_ADMM && a->shape->convex && b->shape->convex;
+    pls_pair_state none = {{0.0}};
+    const query q = {a, b, state->value, counts}, cold = {a, b, none.value, counts};
+    pls_depth d;
     ++counts->queries;
-    (void)options;
-    pls_depth d = table[kind_of(a->shape)][kind_of(b->shape)](&q);
+    if (!admm || !by_admm(&q, options->tolerance, &d)) d = table[kind_of(a->shape)][kind_of(b->shape)](admm ? &cold : &q);
     as_touch(&d, out);
-    // options->faces != PLS_FACES_POINT: pls_faces_touch(a, b, &d, options, out) goes here; where it gives false the point stands.
-    // options->solver == PLS_SOLVER_ADMM: pls_admm_depth(a, b, options->tolerance, state->value + ADMM, &overlap) goes in place of the table.
+    // Where the pair has no faces to speak of the point stands.
+    if (options->faces != PLS_FACES_POINT && d.delta > 0.0) pls_faces_touch(a, b, &d, options, out);
 }

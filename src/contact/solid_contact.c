@@ -246,9 +246,10 @@ static void store_contact(pls_solid_list *list, const pls_contact_input *in, siz
     const pls_vec3 arm_j = pls_sub(t->point, m.centre_j);
     const pls_vec3 shear = pls_vec(work->shear_force[0][k], work->shear_force[1][k], work->shear_force[2][k]);
     const pls_vec3 force = pls_sub(shear, pls_scale(n, work->normal_force[k]));
+    const pls_vec3 twist = pls_scale(n, t->twist * work->normal_force[k]); // on j, and against it on i
     double *slot = list->slot + c * PLS_SOLID_SLOT;
-    put3(slot, force), put3(slot + 4, pls_cross(arm_i, force));
-    put3(slot + 8, pls_scale(force, -1.0)), put3(slot + 12, pls_cross(force, arm_j));
+    put3(slot, force), put3(slot + 4, pls_sub(pls_cross(arm_i, force), twist));
+    put3(slot + 8, pls_scale(force, -1.0)), put3(slot + 12, pls_add(pls_cross(force, arm_j), twist));
     slot[3] = slot[11] = work->damping_power[k];
     slot[7] = slot[15] = work->slip_work[k];
     put3(memory->spring, pls_vec(work->spring[0][k], work->spring[1][k], work->spring[2][k]));

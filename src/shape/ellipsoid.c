@@ -142,8 +142,8 @@ static pls_vec3 proximal(const pls_shape *shape, pls_vec3 X, double step)
 {
     const double *e = shape->values, c = least_axis(shape), x[3] = {X.x, X.y, X.z};
     pls_vec3 n = gradient(shape, X), Y = pls_sub(X, pls_scale(n, step));
-    double phi = pls_dot(n, X) - support_function(shape, n), y[3] = {0.0, 0.0, 0.0}, low = 0.0, high = 1.0;
-    if (phi >= step || sdf(shape, Y) - (phi - step) < 1e-13 * bounding_radius(shape)) return Y;
+    double phi = sdf(shape, X) + e[ROUNDING], y[3] = {0.0, 0.0, 0.0}, low = 0.0, high = 1.0;
+    if (phi >= step || sdf(shape, Y) + e[ROUNDING] - (phi - step) < 1e-13 * bounding_radius(shape)) return Y;
     for (int k = 0; k < 200 && high - low > 0.0; ++k)
     {
         double s = 0.5 * (low + high), square = s * s;

@@ -3,7 +3,7 @@
 
 #include "contact/faces.h"
 #include "support/solids.h"
-#include "support/two_bodies.h"
+#include "support/moving_body.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

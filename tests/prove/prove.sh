@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The long verification campaign: writes docs/verification.md and docs/figures/verify-*.svg. Builds nothing.
+# The long verification campaign: writes docs/verification.md and docs/figures/verify-*.svg, then docs/contact-detection.md (contact_methods.sh). Builds nothing.
 #
 #     tests/prove/prove.sh [build folder]        build/release by default
 #     PARTICLS_KILLS                             runs to kill on each scene, 50 by default
@@ -135,4 +135,6 @@ TEXT
     cat "$scratch/kill.md"
 } >"$page"
 echo "$page"
+
+bash "$root/tests/prove/contact_methods.sh" "$build" || status=1
 exit "$status"

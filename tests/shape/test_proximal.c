@@ -37,6 +37,7 @@ static const example examples[] = {
     {"cylinder", &pls_cylinder_shape, 3, {0.6, 1.5, 0.0}, 0, false},
     {"rounded cylinder", &pls_cylinder_shape, 3, {0.9, 0.8, 0.25}, 0, false},
     {"ellipsoid", &pls_ellipsoid_shape, 3, {0.5, 0.8, 1.3}, 0, true},
+    {"rounded ellipsoid", &pls_ellipsoid_shape, 3, {0.5, 0.8, 1.3, 0.2}, 0, true},
     {"oblate", &pls_ellipsoid_shape, 3, {1.0, 1.0, 0.3}, 0, true},
     {"prolate", &pls_ellipsoid_shape, 3, {0.4, 0.4, 1.0}, 0, true},
     {"ellipse", &pls_ellipsoid_shape, 2, {0.5, 1.7, 1.0}, 0, true},
@@ -109,7 +110,11 @@ static void proximal_from_sdf_is_least(void **state)
         for (int k = 0; k < POINTS / 10; ++k)
         {
             double step = size * (0.01 + 0.3 * pls_random_uniform(&random));
-            pls_vec3 X = random_point(shape->dimension, 1.5 * size, &random), Y = pls_proximal_from_sdf(shape, X, step);
+            pls_vec3 X = random_point(shape->dimension, 1.5 * size, &random);
+            // Deep inside of a superquadric its SDF may miss the nearest of several places: from outside then, and not as far.
+            if (e >= EXAMPLES) step *= 0.3;
+            if (e >= EXAMPLES && pls_shape_sdf(shape, X) < 0.0) continue;
+            pls_vec3 Y = pls_proximal_from_sdf(shape, X, step);
             double phi = pls_shape_sdf(shape, Y);
             for (int j = 0; j < 60; ++j)
             {

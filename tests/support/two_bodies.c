@@ -1,73 +1,84 @@
-// two_bodies.c -- rigid bodies in free flight and under kicks. Splitting of the rotation: Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840.
+// two_bodies.c -- two rigid bodies that collide without friction or damping.
+//
+// Spin is kept as angular momentum, which forces change and free flight does not. Orientation moves by the angular velocity of the middle of the step: second order.
 
 #include "support/two_bodies.h"
 
-moving_body moving_body_of(const pls_shape *shape)
+two_bodies_body two_bodies_make(const pls_shape *shape, pls_vec3 position, pls_quat orientation)
 {
-    return (moving_body){.shape = shape, .mass = shape->mass.volume, .moments = shape->moments, .q = pls_quat_identity()};
+    const bool fixed = shape->ops->unbounded;
+    return (two_bodies_body){.shape = shape,
+                             .mass = fixed ? INFINITY : shape->mass.volume,
+                             .moments = shape->moments,
+                             .position = position,
+                             .orientation = orientation};
 }
 
-moving_body fixed_body_of(const pls_shape *shape)
+pls_posed two_bodies_pose(const two_bodies_body *body) { return pls_pose(body->shape, body->position, body->orientation, 1.0); }
+
+static double over(double spin, double moment) { return moment > 0.0 ? spin / moment : 0.0; }
+
+static pls_vec3 angular_velocity(const two_bodies_body *body, pls_quat orientation)
 {
-    return (moving_body){.shape = shape, .fixed = true, .mass = INFINITY, .q = pls_quat_identity()};
+    if (isinf(body->mass)) return pls_vec(0.0, 0.0, 0.0);
+    pls_vec3 l = pls_rotate_back(orientation, body->spin);
+    return pls_rotate(orientation, pls_vec(over(l.x, body->moments.x), over(l.y, body->moments.y), over(l.z, body->moments.z)));
 }
 
-pls_posed moving_body_pose(const moving_body *body) { return pls_pose(body->shape, body->x, body->q, 1.0); }
+pls_vec3 two_bodies_angular_velocity(const two_bodies_body *body) { return angular_velocity(body, body->orientation); }
 
-static double rate(double momentum, double moment) { return moment > 0.0 ? momentum / moment : 0.0; }
-
-static pls_vec3 own_spin(const moving_body *b)
+/// Turned by w t.
+static pls_quat turned(pls_quat q, pls_vec3 w, double t)
 {
-    return pls_vec(rate(b->momentum.x, b->moments.x), rate(b->momentum.y, b->moments.y), rate(b->momentum.z, b->moments.z));
+    double angle = pls_length(w) * t, part = angle > 1e-8 ? sin(0.5 * angle) / pls_length(w) : 0.5 * t;
+    return pls_quat_unit(pls_quat_multiply((pls_quat){cos(0.5 * angle), part * w.x, part * w.y, part * w.z}, q));
 }
 
-pls_vec3 moving_body_spin(const moving_body *body) { return pls_rotate(body->q, own_spin(body)); }
-
-void moving_body_set_spin(moving_body *body, pls_vec3 spin)
+static void drift(two_bodies_body *body, double dt)
 {
-    pls_vec3 w = pls_rotate_back(body->q, spin);
-    body->momentum = pls_vec(body->moments.x * w.x, body->moments.y * w.y, body->moments.z * w.z);
+    body->position = pls_add(body->position, pls_scale(body->velocity, dt));
+    pls_quat middle = turned(body->orientation, angular_velocity(body, body->orientation), 0.5 * dt);
+    body->orientation = turned(body->orientation, angular_velocity(body, middle), dt);
 }
 
-pls_vec3 moving_body_velocity_at(const moving_body *body, pls_vec3 point)
+static void push(two_bodies_body *body, pls_vec3 impulse, pls_vec3 point)
 {
-    return pls_add(body->v, pls_cross(moving_body_spin(body), pls_sub(point, body->x)));
+    if (isinf(body->mass)) return;
+    body->velocity = pls_add(body->velocity, pls_scale(impulse, 1.0 / body->mass));
+    body->spin = pls_add(body->spin, pls_cross(pls_sub(point, body->position), impulse));
 }
 
-double moving_body_energy(const moving_body *body)
+static void kick(two_bodies *pair, double dt)
 {
-    if (body->fixed) return 0.0;
-    return 0.5 * body->mass * pls_dot(body->v, body->v) + 0.5 * pls_dot(body->momentum, own_spin(body));
+    const two_bodies_contact *c = &pair->contact;
+    if (!(c->delta > 0.0)) return;
+    pls_vec3 impulse = pls_scale(c->normal, pair->stiffness * c->delta * dt);
+    push(&pair->body[0], pls_scale(impulse, -1.0), c->point);
+    push(&pair->body[1], impulse, c->point);
 }
 
-void moving_body_kick(moving_body *body, pls_vec3 force, pls_vec3 point, double time)
+void two_bodies_begin(two_bodies *pair)
 {
-    if (body->fixed) return;
-    body->v = pls_add(body->v, pls_scale(force, time / body->mass));
-    moving_body_twist(body, pls_cross(pls_sub(point, body->x), force), time);
+    pls_posed a = two_bodies_pose(&pair->body[0]), b = two_bodies_pose(&pair->body[1]);
+    pair->contact = pair->find(&a, &b, pair->user);
 }
 
-void moving_body_twist(moving_body *body, pls_vec3 couple, double time)
+void two_bodies_step(two_bodies *pair, double dt)
 {
-    if (!body->fixed) body->momentum = pls_add(body->momentum, pls_scale(pls_rotate_back(body->q, couple), time));
+    kick(pair, 0.5 * dt);
+    for (int k = 0; k < 2; ++k) drift(&pair->body[k], dt);
+    two_bodies_begin(pair);
+    kick(pair, 0.5 * dt);
 }
 
-/// About one principal axis.
-static void turn(moving_body *b, pls_vec3 axis, double time)
+double two_bodies_energy(const two_bodies *pair)
 {
-    const double half = 0.5 * time * pls_dot(own_spin(b), axis), s = sin(half);
-    const pls_quat r = {cos(half), axis.x * s, axis.y * s, axis.z * s};
-    b->q = pls_quat_unit(pls_quat_multiply(b->q, r));
-    b->momentum = pls_rotate_back(r, b->momentum);
-}
-
-void moving_body_drift(moving_body *body, double time)
-{
-    if (body->fixed) return;
-    body->x = pls_add(body->x, pls_scale(body->v, time));
-    turn(body, pls_vec(1.0, 0.0, 0.0), 0.5 * time);
-    turn(body, pls_vec(0.0, 1.0, 0.0), 0.5 * time);
-    turn(body, pls_vec(0.0, 0.0, 1.0), time);
-    turn(body, pls_vec(0.0, 1.0, 0.0), 0.5 * time);
-    turn(body, pls_vec(1.0, 0.0, 0.0), 0.5 * time);
+    double delta = fmax(pair->contact.delta, 0.0), energy = 0.5 * pair->stiffness * delta * delta;
+    for (int k = 0; k < 2; ++k)
+    {
+        const two_bodies_body *body = &pair->body[k];
+        if (isinf(body->mass)) continue;
+        energy += 0.5 * body->mass * pls_dot(body->velocity, body->velocity) + 0.5 * pls_dot(body->spin, two_bodies_angular_velocity(body));
+    }
+    return energy;
 }

@@ -1,35 +1,47 @@
-// two_bodies.h -- a few rigid bodies moved by velocity Verlet, apart from the library's step: to measure what contact forces do to energy.
-#ifndef PLS_TEST_TWO_BODIES_H
-#define PLS_TEST_TWO_BODIES_H
+// two_bodies.h -- two rigid bodies that collide without friction or damping: what a way of finding contacts does to energy.
+//
+// Velocity Verlet on its own, apart from the library's step: any change of energy beyond its second-order error is the contact's.
+#ifndef PLS_TESTS_SUPPORT_TWO_BODIES_H
+#define PLS_TESTS_SUPPORT_TWO_BODIES_H
 
 #include "contact/posed.h"
 
-typedef struct moving_body
+/// A body of density 1; of an unbounded shape: one that does not move.
+typedef struct two_bodies_body
 {
     const pls_shape *shape;
-    bool fixed;
-    double mass;
-    pls_vec3 moments;  ///< principal
-    pls_vec3 x, v;     ///< centre of mass
-    pls_quat q;        ///< principal axes to world
-    pls_vec3 momentum; ///< angular, in principal axes
-} moving_body;
+    double mass;                       ///< INFINITY: does not move
+    pls_vec3 moments;                  ///< about the principal axes
+    pls_vec3 position, velocity, spin; ///< spin: angular momentum in the world
+    pls_quat orientation;
+} two_bodies_body;
 
-/// Of density 1, at rest at the origin.
-moving_body moving_body_of(const pls_shape *shape);
-moving_body fixed_body_of(const pls_shape *shape);
-pls_posed moving_body_pose(const moving_body *body);
-/// In the world.
-pls_vec3 moving_body_spin(const moving_body *body);
-void moving_body_set_spin(moving_body *body, pls_vec3 spin);
-pls_vec3 moving_body_velocity_at(const moving_body *body, pls_vec3 point);
-double moving_body_energy(const moving_body *body);
+typedef struct two_bodies_contact
+{
+    double delta;    ///< > 0: overlapping
+    pls_vec3 normal; ///< from A to B
+    pls_vec3 point;  ///< where the force acts
+} two_bodies_contact;
 
-/// A force at a point of the world acts for a time. Fixed bodies stay.
-void moving_body_kick(moving_body *body, pls_vec3 force, pls_vec3 point, double time);
-/// A couple, in the world.
-void moving_body_twist(moving_body *body, pls_vec3 couple, double time);
-/// Free flight: exact but for the rotation, which is split into turns about the principal axes (second order, symplectic, |q| = 1).
-void moving_body_drift(moving_body *body, double time);
+typedef two_bodies_contact two_bodies_finder(const pls_posed *a, const pls_posed *b, void *user);
+
+typedef struct two_bodies
+{
+    two_bodies_body body[2];
+    double stiffness;
+    two_bodies_finder *find;
+    void *user;
+    two_bodies_contact contact; ///< as of now
+} two_bodies;
+
+two_bodies_body two_bodies_make(const pls_shape *shape, pls_vec3 position, pls_quat orientation);
+pls_posed two_bodies_pose(const two_bodies_body *body);
+/// Angular velocity in the world.
+pls_vec3 two_bodies_angular_velocity(const two_bodies_body *body);
+/// Find the contact where the bodies are; before the first step.
+void two_bodies_begin(two_bodies *pair);
+void two_bodies_step(two_bodies *pair, double dt);
+/// Kinetic, with k delta^2 / 2.
+double two_bodies_energy(const two_bodies *pair);
 
 #endif
