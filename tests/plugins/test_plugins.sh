@@ -100,7 +100,7 @@ forces:
   - {stokes_drag: {viscosity: eta, bodies: falling}}
   - {stokes_drag: {viscosity: eta, flow: ["0.3*sin(20*t)", 0, 0], bodies: carried}}
   - {field: {acceleration: [0, 0, -9.81], bodies: falling}}
-time: {end: 0.8, dt: 1.0e-4}
+time: {end: 1.6, dt: 1.0e-4}
 observe:
   - {particle: falling, quantities: [velocity, angular_velocity, mass], every: 0.02}
   - {particle: carried, quantities: [velocity, mass], every: 0.02}
@@ -225,6 +225,7 @@ for row in falling:
     w = 7 * math.exp(-8 * math.pi * eta * r**3 / (0.4 * m * r * r) * t)
     assert abs(row[column["angular_velocity_y"]] - w) < 1e-3 * 7, (t, row, w)
 end = falling[-1][column["velocity_z"]]
+# after 18 tau nothing of the start is left
 assert abs(end / (-m * g / (6 * math.pi * eta * r)) - 1) < 1e-6, end
 
 # v' = (u0 sin(f t) - v)/tau from rest: v = u0 (sin(f t) - f tau cos(f t) + f tau exp(-t/tau)) / (1 + f^2 tau^2)
