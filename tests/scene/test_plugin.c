@@ -211,7 +211,7 @@ static void what_a_plugin_holds_can_be_read(void **state)
                                         "### my_shape\n",
                                         "### my_force\n",
                                         "### my_observer\n",
-                                        "| `centre` | 3 numbers | m | 0 | ",
+                                        "| `centre` | vector | m | 0 | ",
                                         "| `largest_speed` | m/s | "};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; ++k)
         if (!strstr(text, parts[k])) fail_msg("'%s' is not in: %s", parts[k], text);
