@@ -123,7 +123,7 @@ pls_status pls_build_each_formula(const pls_builder *b, const pls_parameter *tab
         if (row->kind != PLS_PARAMETER_NUMBER) continue;
         const pls_node *node = pls_node_get(map, row->name);
         bool vector = node->kind == PLS_NODE_LIST;
-        for (size_t c = 0; c < (vector ? node->count : 1); ++c, ++place)
+        for (size_t c = 0; c < (vector ? node->count : 1); ++c)
         {
             const pls_node *number = vector ? node->child[c] : node;
             if (!number->formula) continue;
@@ -131,8 +131,9 @@ pls_status pls_build_each_formula(const pls_builder *b, const pls_parameter *tab
             pls_key key = pls_schema_parameter(row, 0, initial);
             snprintf(name, sizeof name, vector ? "%s[%zu]" : "%s", row->name, c);
             key.name = name;
-            PLS_TRY(action(b, &key, number, place, context));
+            PLS_TRY(action(b, &key, number, place + c, context));
         }
+        place += vector ? 3 : 1;
     }
     return PLS_OK;
 }

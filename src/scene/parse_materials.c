@@ -96,8 +96,10 @@ void pls_scene_parameters(const pls_parameter *table, const pls_node *map, doubl
         if (table->kind != PLS_PARAMETER_NUMBER) continue;
         if (node && node->kind == PLS_NODE_LIST)
         {
-            // The third component that a vector of a shape has no place for in 2D is not used: any number in range will do.
-            for (size_t c = 0; c < 3; ++c) *values++ = node->child[c < node->count ? c : node->count - 1]->number;
+            // The third component that a vector has no place for in 2D is 0 or, where that is out of range, any number within: it is not used.
+            bool zero = table->open_minimum ? table->minimum < 0.0 : table->minimum <= 0.0;
+            double rest = zero && table->maximum >= 0.0 ? 0.0 : node->child[node->count - 1]->number;
+            for (size_t c = 0; c < 3; ++c) *values++ = c < node->count ? node->child[c]->number : rest;
         }
         else
             *values++ = node && node->numeric ? node->number : NAN;

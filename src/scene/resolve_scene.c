@@ -168,13 +168,13 @@ static pls_status collect_state_names(pls_resolver *r, const pls_node *states)
 // ---------------------------------------------------------------------------------------------------------------------------------------
 // maps whose keys depend on their contents
 
-static pls_status parameter_keys(pls_resolver *r, const pls_parameter *table, unsigned uses, pls_key *keys, size_t *count)
+static pls_status parameter_keys(pls_resolver *r, const pls_parameter *table, pls_table_owner owner, pls_key *keys, size_t *count)
 {
     for (; table && table->name && *count < PLS_MAX_KEYS; ++table)
     {
         char *initial;
         PLS_TRY(pls_arena_allocate(&r->scene->arena, &initial, 32, 1, "a default"));
-        keys[(*count)++] = pls_schema_parameter(table, uses, initial);
+        keys[(*count)++] = pls_schema_parameter_of(owner, table, initial);
     }
     return PLS_OK;
 }
@@ -190,17 +190,6 @@ static pls_status find_ops(const pls_registry *registry, const pls_node *name, c
     char hint[600];
     pls_scene_hint(hint, sizeof hint, name->text, "there are", candidates, count);
     return pls_node_fail(name, hint, "unknown %s '%.80s'", registry->what, name->text);
-}
-
-static pls_status shape_keys(pls_resolver *r, const pls_parameter *table, pls_key *keys, size_t *count)
-{
-    for (; table && table->name && *count < PLS_MAX_KEYS; ++table)
-    {
-        char *initial;
-        PLS_TRY(pls_arena_allocate(&r->scene->arena, &initial, 32, 1, "a default"));
-        keys[(*count)++] = pls_schema_shape_parameter(table, initial);
-    }
-    return PLS_OK;
 }
 
 static pls_status wrong_dimension(const pls_resolver *r, const pls_node *name, const char *label)
@@ -233,7 +222,7 @@ static pls_status resolve_shape(pls_resolver *r, const pls_node *name, pls_node 
     if (r->scene->dimension == 2 ? !ops->in_2d : !ops->in_3d) return wrong_dimension(r, node->key[0], label);
     pls_key keys[PLS_MAX_KEYS];
     size_t count = 0;
-    PLS_TRY(shape_keys(r, ops->parameters, keys, &count));
+    PLS_TRY(parameter_keys(r, ops->parameters, PLS_OF_SHAPE, keys, &count));
     return pls_resolve_map(r, node->child[0], keys, count, label);
 }
 
@@ -259,7 +248,7 @@ pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *lab
         const void *found;
         PLS_TRY(find_ops(&r->scene->law_ops, law, &found));
         const pls_law_ops *ops = found;
-        PLS_TRY(parameter_keys(r, ops->parameters, PLS_USES_TIME | PLS_USES_STATES, keys, &count));
+        PLS_TRY(parameter_keys(r, ops->parameters, PLS_OF_LAW, keys, &count));
         PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "%s (law %s)", label, ops->name));
         return pls_resolve_map(r, entry, keys, count, inner);
     }
@@ -269,7 +258,7 @@ pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *lab
 
 /// An entry that names operations of a plugin: first the map of its numbers, then the entry itself, whose row NAME stands for that map.
 static pls_status resolve_of_plugin(pls_resolver *r, const char *section, const char *name, const char *meaning, const pls_parameter *table,
-                                    unsigned uses, pls_node *entry, const char *label)
+                                    pls_table_owner owner, pls_node *entry, const char *label)
 {
     pls_key keys[PLS_MAX_KEYS];
     size_t count;
@@ -278,7 +267,7 @@ static pls_status resolve_of_plugin(pls_resolver *r, const char *section, const 
     size_t beside;
     const pls_key *shared = pls_schema_keys(rows->sub, &beside);
     memcpy(keys, shared, beside * sizeof *keys);
-    PLS_TRY(parameter_keys(r, table, uses, keys, &beside));
+    PLS_TRY(parameter_keys(r, table, owner, keys, &beside));
     PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "'%s' of %s", name, label));
     PLS_TRY(pls_resolve_map(r, pls_node_get(entry, name), keys, beside, inner));
 
@@ -292,14 +281,14 @@ pls_status pls_resolve_force_of_plugin(pls_resolver *r, pls_node *entry, const c
 {
     const pls_node *map;
     const pls_force_ops *ops = pls_scene_named_operations(&r->scene->force_ops, entry, &map);
-    return resolve_of_plugin(r, "force_plugin", ops->name, ops->meaning, ops->parameters, PLS_USES_TIME | PLS_USES_STATES, entry, label);
+    return resolve_of_plugin(r, "force_plugin", ops->name, ops->meaning, ops->parameters, PLS_OF_FORCE, entry, label);
 }
 
 pls_status pls_resolve_observer_of_plugin(pls_resolver *r, pls_node *entry, const char *label)
 {
     const pls_node *map;
     const pls_observer_ops *ops = pls_scene_named_operations(&r->scene->observer_ops, entry, &map);
-    return resolve_of_plugin(r, "observe_plugin", ops->name, ops->meaning, ops->parameters, 0, entry, label);
+    return resolve_of_plugin(r, "observe_plugin", ops->name, ops->meaning, ops->parameters, PLS_OF_OBSERVER, entry, label);
 }
 
 pls_status pls_resolve_state(pls_resolver *r, pls_node *entry, const char *label)

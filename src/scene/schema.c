@@ -328,11 +328,12 @@ static pls_key other_parameter(const pls_parameter *parameter)
                      .meaning = parameter->meaning ? parameter->meaning : ""};
 }
 
-pls_key pls_schema_shape_parameter(const pls_parameter *parameter, char initial[32])
+pls_key pls_schema_parameter_of(pls_table_owner owner, const pls_parameter *parameter, char initial[32])
 {
-    if (parameter->kind != PLS_PARAMETER_NUMBER) return other_parameter(parameter);
-    pls_key key = pls_schema_parameter(parameter, 0, initial);
-    if (key.type == PLS_KEY_VECTOR3) key.type = PLS_KEY_VECTOR;
+    if (owner == PLS_OF_SHAPE && parameter->kind != PLS_PARAMETER_NUMBER) return other_parameter(parameter);
+    bool timely = owner == PLS_OF_LAW || owner == PLS_OF_FORCE;
+    pls_key key = pls_schema_parameter(parameter, timely ? PLS_USES_TIME | PLS_USES_STATES : 0, initial);
+    if (owner != PLS_OF_LAW && key.type == PLS_KEY_VECTOR3) key.type = PLS_KEY_VECTOR;
     return key;
 }
 

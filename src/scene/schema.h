@@ -90,13 +90,15 @@ enum { PLS_MAX_KEYS = 64 }; ///< of one map, parameters of a shape or law includ
 const pls_section *pls_schema_sections(size_t *count);
 /// Rows of a section, `*count` of them (they lie together in the table).
 const pls_key *pls_schema_keys(const char *section, size_t *count);
-/// A row for a parameter of a shape: vectors have the scene's dimensions, and points, paths and other shapes may be asked for. `initial` as below.
-pls_key pls_schema_shape_parameter(const pls_parameter *parameter, char initial[32]);
+/// A row for a number, with three components for a vector in 2D too. `initial` holds 32 bytes for the default's text and must live as long as the row.
 /// A row for a parameter of a law, force or observer, whose vectors have three components in 2D too. `initial` holds 32 bytes for the default's text and must live as long as the row.
 pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char initial[32]);
 
 /// Whose table of parameters it is: shapes take what is not a number too, and the numbers of laws and forces may change in time.
 typedef enum pls_table_owner { PLS_OF_SHAPE, PLS_OF_LAW, PLS_OF_FORCE, PLS_OF_OBSERVER } pls_table_owner;
+/// The row for a parameter of any of them: shapes take other things than numbers, laws and forces expressions over t and states, and vectors have the scene's
+/// dimension but for laws.
+pls_key pls_schema_parameter_of(pls_table_owner owner, const pls_parameter *parameter, char initial[32]);
 /// A heading and a table of parameters on a reference page.
 pls_status pls_page_parameters(pls_text *out, const char *name, const char *meaning, const pls_parameter *table, pls_table_owner owner);
 

@@ -182,11 +182,9 @@ static pls_status json_map(pls_text *out, const pls_key *keys, size_t count, boo
 /// Rows of a table of parameters; `initial` holds their defaults' texts.
 static size_t parameter_keys(const pls_parameter *table, pls_table_owner owner, pls_key keys[PLS_MAX_KEYS], char initial[PLS_MAX_KEYS][32])
 {
-    const bool timely = owner == PLS_OF_LAW || owner == PLS_OF_FORCE;
     size_t count = 0;
     for (; table && table->name && count < PLS_MAX_KEYS; ++table, ++count)
-        keys[count] = owner == PLS_OF_SHAPE ? pls_schema_shape_parameter(table, initial[count])
-                                            : pls_schema_parameter(table, timely ? PLS_USES_TIME | PLS_USES_STATES : 0, initial[count]);
+        keys[count] = pls_schema_parameter_of(owner, table, initial[count]);
     return count;
 }
 

@@ -139,7 +139,7 @@ shapes: {ball: {sphere: {radius: 0.05}}}
 bodies:
   - {name: a, shape: ball, material: grain, position: [0, 0], velocity: [1, 0]}
   - {name: b, shape: ball, material: grain, scale: 2, position: [1, 0], velocity: [-2, 3]}
-forces: [{my_force: {stiffness: 20, bodies: a}}]
+forces: [{my_force: {stiffness: 20, centre: [0, 0], bodies: a}}]
 time: {end: 0.5, dt: 1.0e-4}
 observe:
   - {granular_temperature: {}, every: 0.1}
