@@ -22,6 +22,25 @@ enum { MAX_OVERRIDES = 256, TIMED_STEPS = 50 };
 
 static const double most_timing = 3; ///< wall time spent on timing [s]
 
+/// What shapes are, so that a wrong unit or a wrong file shows: volumes and sizes at scale 1.
+static void print_shapes(const pls_scene *scene)
+{
+    const size_t count = pls_scene_shape_count(scene);
+    printf("shapes             %9zu\n", count);
+    for (size_t k = 0; k < count; ++k)
+    {
+        const char *name = "";
+        const pls_shape *shape = pls_scene_get_shape(scene, k, &name);
+        printf("  %-16s %s", name, shape->ops->name);
+        if (shape->part_count > 0) printf(" of %zu part%s", shape->part_count, shape->part_count == 1 ? "" : "s");
+        if (!shape->ops->unbounded) printf(", radius %.6g m", shape->radius);
+        if (!shape->ops->unbounded && !shape->ops->wall)
+            printf(", %s %.6g m^%d", shape->dimension == 2 ? "area" : "volume", shape->mass.volume, shape->dimension);
+        if (shape->mass.error > 0.0) printf(" (measured, to a part of %.1g)", shape->mass.error);
+        printf("\n");
+    }
+}
+
 /// Radii and number of the bodies of one entry.
 typedef struct entry
 {
@@ -169,6 +188,7 @@ static int describe(pls_scene *scene, pls_world *world, bool timing)
     const char *title = pls_scene_title(scene);
     printf("scene              %s\n", pls_scene_path(scene));
     if (title && *title) printf("title              %s\n", title);
+    print_shapes(scene);
     if (print_bodies(world) != PLS_OK || print_memory(world) != PLS_OK || print_step(world, end) != PLS_OK) return cli_failed(CLI_FAILED);
     print_observers(scene);
     if (timing && print_timing(world, end) != PLS_OK) return cli_failed(CLI_FAILED);
@@ -216,9 +236,9 @@ const cli_verb cli_check = {
     .name = "check",
     .arguments = "SCENE",
     .summary = "check a scene and say how long it will take",
-    .about =
-        "Reads and builds the scene and reports bodies, contacts, memory, the time step against the largest stable one, and an estimate\n"
-        "of the time the run will take, from a few steps. Writes nothing.",
+    .about = "Reads and builds the scene and reports shapes, bodies, contacts, memory, the time step against the largest stable one, and "
+             "an estimate\n"
+             "of the time the run will take, from a few steps. Writes nothing.",
     .example = "  particls check examples/two-spheres/scene.yaml",
     .options = options,
     .function = run,

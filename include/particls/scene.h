@@ -21,13 +21,16 @@ pls_status pls_scene_build(pls_scene *scene, pls_world **world);
 
 /// Observers of the scene, owned by the scene.
 const pls_observer_def *pls_scene_observers(const pls_scene *scene, size_t *count);
+/// Shapes of the scene in its order, owned by the scene; `*name` (may be null) as in the scene.
+size_t pls_scene_shape_count(const pls_scene *scene);
+const pls_shape *pls_scene_get_shape(const pls_scene *scene, size_t k, const char **name);
 /// `time: end` [s].
 double pls_scene_end_time(const pls_scene *scene);
 const char *pls_scene_title(const pls_scene *scene);
 const char *pls_scene_path(const pls_scene *scene);
 /// Hash of the scene with every value in force; the same scene gives the same hash.
 uint64_t pls_scene_hash(const pls_scene *scene);
-/// Files the scene reads (plugins, CSV), as written in the scene, resolved against its folder.
+/// Files the scene reads (plugins, tables, meshes), as written in the scene, resolved against its folder.
 size_t pls_scene_input_count(const pls_scene *scene);
 const char *pls_scene_input(const pls_scene *scene, size_t k);
 

@@ -82,6 +82,15 @@ const pls_observer_def *pls_scene_observers(const pls_scene *scene, size_t *coun
     return scene->observers;
 }
 
+size_t pls_scene_shape_count(const pls_scene *scene) { return scene->shape_count; }
+
+const pls_shape *pls_scene_get_shape(const pls_scene *scene, size_t k, const char **name)
+{
+    if (k >= scene->shape_count) return NULL;
+    if (name) *name = scene->shapes[k].name;
+    return scene->shapes[k].made;
+}
+
 double pls_scene_end_time(const pls_scene *scene) { return scene->end; }
 const char *pls_scene_title(const pls_scene *scene) { return pls_scene_string(scene->root, "title", ""); }
 const char *pls_scene_path(const pls_scene *scene) { return scene->source.name; }

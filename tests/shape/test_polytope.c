@@ -239,6 +239,58 @@ static void polygons_are_counterclockwise_and_exact(void **state)
     pls_shape_free(s);
 }
 
+/// A prism is its base times its height; beside it the polyhedron of the same corners, and Steiner's volume when rounded.
+static void prisms_are_bases_times_heights(void **state)
+{
+    (void)state;
+    enum { SIDES = 7 };
+    pls_vec3 base[SIDES + 1], corner[2 * SIDES];
+    const double height = 0.4;
+    double area = 0.0, perimeter = 0.0;
+    for (int k = 0; k < SIDES; ++k)
+    {
+        double angle = 2.0 * M_PI * k / SIDES + 0.1 * sin(3.0 * k);
+        base[k] = pls_vec(0.7 * cos(angle), 0.5 * sin(angle) + 0.1, 0.0);
+        corner[2 * k] = pls_vec(base[k].x, base[k].y, -0.5 * height);
+        corner[2 * k + 1] = pls_vec(base[k].x, base[k].y, 0.5 * height);
+    }
+    base[SIDES] = pls_vec(0.1, 0.1, 0.0); // inside
+    for (int k = 0; k < SIDES; ++k)
+    {
+        pls_vec3 a = base[k], b = base[(k + 1) % SIDES];
+        area += 0.5 * (a.x * b.y - a.y * b.x);
+        perimeter += pls_length(pls_sub(b, a));
+    }
+    double values[2] = {0.0, height};
+    const pls_shape_input input = {.values = values, .points = base, .point_count = SIDES + 1};
+    const pls_shape_input solid = {.points = corner, .point_count = 2 * SIDES};
+    pls_shape *prism = NULL, *same = NULL;
+    assert_int_equal(pls_shape_make(&pls_prism_shape, 3, &input, "x", &prism), PLS_OK);
+    assert_int_equal(pls_shape_make(&pls_polyhedron_shape, 3, &solid, "x", &same), PLS_OK);
+    assert_int_equal(prism->polytope->face_count, SIDES + 2);
+    assert_int_equal(prism->polytope->vertex_count, 2 * SIDES);
+    assert_true(fabs(prism->mass.volume - area * height) < 1e-15);
+    assert_true(fabs(prism->mass.centre.z) < 1e-15 && fabs(prism->upper.z - 0.5 * height) < 1e-15);
+    for (int k = 0; k < 500; ++k)
+    {
+        pls_vec3 X = pls_vec(sin(1.7 * k), cos(2.3 * k), sin(0.9 * k + 1.0));
+        assert_true(fabs(pls_shape_sdf(prism, X) - pls_shape_sdf(same, X)) < 1e-14);
+    }
+    pls_shape_free(prism);
+    pls_shape_free(same);
+    const double r = values[0] = 0.05;
+    assert_int_equal(pls_shape_make(&pls_prism_shape, 3, &input, "x", &prism), PLS_OK);
+    // Half the sum of edge length times outer angle: right angles at top and bottom, 2 pi over all upright edges.
+    const double known = area * height + (2.0 * area + perimeter * height) * r + (0.5 * M_PI * perimeter + M_PI * height) * r * r +
+                         4.0 / 3.0 * M_PI * r * r * r;
+    assert_true(fabs(prism->mass.volume / known - 1.0) < 1e-6);
+    assert_true(fabs(prism->upper.z - 0.5 * height - r) < 1e-15);
+    pls_shape_free(prism);
+    const pls_shape_input flat = {.values = values, .points = base, .point_count = 2};
+    assert_int_equal(pls_shape_make(&pls_prism_shape, 3, &flat, "x", &prism), PLS_INVALID_ARGUMENT);
+    assert_string_equal(pls_last_message(), "the base of a prism needs at least 3 points, not 2");
+}
+
 static void assert_refused(size_t count, int dimension, const char *message)
 {
     pls_hull *hull;
@@ -265,6 +317,7 @@ int main(void)
         cmocka_unit_test(distances_are_those_to_all_triangles),    cmocka_unit_test(the_support_point_is_the_best_of_all),
         cmocka_unit_test(masses_are_those_of_the_quadrature),      cmocka_unit_test(a_box_has_its_mass_and_a_rounded_one_steiners),
         cmocka_unit_test(polygons_are_counterclockwise_and_exact), cmocka_unit_test(points_without_a_volume_are_refused),
+        cmocka_unit_test(prisms_are_bases_times_heights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -378,6 +378,87 @@ static void ellipsoid_to_round_off(void **state)
     }
 }
 
+/// Thickened by a ball, a convex shape is all that lies within `rounding` of it: its distance is less by that, inside too, and its support points lie further out.
+static void rounding_thickens_ellipsoids_and_superquadrics(void **state)
+{
+    (void)state;
+    static const example cores[] = {{&pls_ellipsoid_shape, 3, {0.5, 0.8, 1.3}, "ellipsoid"},
+                                    {&pls_ellipsoid_shape, 2, {0.5, 1.7, 1.0}, "ellipse"},
+                                    {&pls_superquadric_shape, 2, {0.6, 1.0, 1.0, 1.0, 0.4}, "superellipse"}};
+    for (int e = 0; e < 3; ++e)
+    {
+        const double r = 0.15;
+        example thick = cores[e];
+        thick.values[cores[e].ops == &pls_ellipsoid_shape ? 3 : 5] = r;
+        pls_shape *core = make(&cores[e]), *shape = make(&thick);
+        assert_true(shape->margin == r && core->margin == 0.0);
+        assert_true(fabs(shape->radius - core->radius - r) < 1e-13);
+        pls_random random = pls_random_stream(13, 0, PLS_FOR_USER);
+        for (int k = 0; k < 200; ++k)
+        {
+            pls_vec3 X = random_point(shape, &random, 1.5 * shape->radius), n = pls_unit(random_point(shape, &random, 1.0));
+            assert_true(fabs(pls_shape_sdf(shape, X) - (pls_shape_sdf(core, X) - r)) < 1e-14);
+            pls_vec3 s = pls_shape_support(shape, n);
+            assert_true(pls_length(pls_sub(s, pls_add(pls_shape_support(core, n), pls_scale(n, r)))) < 1e-14);
+            assert_true(fabs(pls_shape_sdf(shape, s)) < 1e-12);
+            assert_true(s.x <= shape->upper.x && s.y <= shape->upper.y && s.z <= shape->upper.z);
+        }
+        pls_shape_free(core);
+        pls_shape_free(shape);
+    }
+}
+
+/// Steiner's formula for thickened bodies; the ellipse's perimeter and the surface and mean width of the spheroid by Simpson's rule.
+static void rounded_ellipsoids_have_steiners_volume(void **state)
+{
+    (void)state;
+    enum { PANELS = 2000 };
+    const double a = 0.5, c = 1.3, r = 0.15;
+    double perimeter = 0.0, area = 0.0, width = 0.0;
+    for (int k = 0; k <= PANELS; ++k)
+    {
+        const double w = (k == 0 || k == PANELS ? 1.0 : k & 1 ? 4.0 : 2.0) / 3.0 / PANELS, t = (double)k / PANELS;
+        const double angle = 0.5 * M_PI * t, speed = hypot(a * sin(angle), c * cos(angle));
+        perimeter += 4.0 * w * 0.5 * M_PI * speed;
+        area +=
+            2.0 * w * 0.5 * M_PI * 2.0 * M_PI * a * cos(angle) * hypot(c * cos(angle), a * sin(angle)); // rings of radius a cos, latitude
+        width += w * hypot(a * sqrt(1.0 - t * t), c * t); // h over cos of the angle to the axis
+    }
+    const example flat = {&pls_ellipsoid_shape, 2, {a, c, 1.0, r}, "ellipse"}, solid = {&pls_ellipsoid_shape, 3, {a, a, c, r}, "spheroid"};
+    pls_shape *shape = make(&flat);
+    assert_true(fabs(shape->mass.volume / (M_PI * a * c + perimeter * r + M_PI * r * r) - 1.0) < 1e-7);
+    pls_shape_free(shape);
+    shape = make(&solid);
+    const double known = 4.0 / 3.0 * M_PI * (a * a * c + r * r * r) + area * r + 4.0 * M_PI * width * r * r;
+    if (fabs(shape->mass.volume / known - 1.0) > 1e-7) fail_msg("volume %.12g, Steiner's %.12g", shape->mass.volume, known);
+    pls_shape_free(shape);
+}
+
+static void shapes_have_their_names_in_2d(void **state)
+{
+    (void)state;
+    const double values[4] = {0.5, 0.3, 0.3, 0.0}, none[1] = {0.0};
+    const struct
+    {
+        const pls_shape_ops *flat, *solid;
+        const double *values;
+    } names[] = {{&pls_disc_shape, &pls_sphere_shape, values},
+                 {&pls_ellipse_shape, &pls_ellipsoid_shape, values},
+                 {&pls_half_plane_shape, &pls_plane_shape, none}};
+    for (int k = 0; k < 3; ++k)
+    {
+        const pls_shape_input input = {.values = names[k].values};
+        pls_shape *a = NULL, *b = NULL;
+        assert_int_equal(pls_shape_make(names[k].flat, 2, &input, "x", &a), PLS_OK);
+        assert_int_equal(pls_shape_make(names[k].solid, 2, &input, "x", &b), PLS_OK);
+        assert_true(a->mass.volume == b->mass.volume && a->radius == b->radius);
+        assert_true(pls_shape_sdf(a, pls_vec(0.9, 0.4, 0.0)) == pls_shape_sdf(b, pls_vec(0.9, 0.4, 0.0)));
+        pls_shape_free(a);
+        pls_shape_free(b);
+        assert_int_equal(pls_shape_make(names[k].flat, 3, &input, "x", &a), PLS_INVALID_ARGUMENT);
+    }
+}
+
 static void refuses_too_much_rounding(void **state)
 {
     (void)state;
@@ -396,10 +477,17 @@ static void refuses_too_much_rounding(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sdf_against_surface),       cmocka_unit_test(gradient_against_differences),
-        cmocka_unit_test(support_against_surface),   cmocka_unit_test(support_gradient_against_differences),
-        cmocka_unit_test(proximal_is_least),         cmocka_unit_test(mass_against_quadrature),
-        cmocka_unit_test(polytopes_are_closed),      cmocka_unit_test(ellipsoid_to_round_off),
+        cmocka_unit_test(sdf_against_surface),
+        cmocka_unit_test(gradient_against_differences),
+        cmocka_unit_test(support_against_surface),
+        cmocka_unit_test(support_gradient_against_differences),
+        cmocka_unit_test(proximal_is_least),
+        cmocka_unit_test(mass_against_quadrature),
+        cmocka_unit_test(polytopes_are_closed),
+        cmocka_unit_test(ellipsoid_to_round_off),
+        cmocka_unit_test(rounding_thickens_ellipsoids_and_superquadrics),
+        cmocka_unit_test(rounded_ellipsoids_have_steiners_volume),
+        cmocka_unit_test(shapes_have_their_names_in_2d),
         cmocka_unit_test(refuses_too_much_rounding),
     };
     return cmocka_run_group_tests_name("shapes", tests, NULL, NULL);
