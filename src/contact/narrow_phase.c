@@ -197,19 +197,15 @@ static pls_depth incremental(const query *q);
 static pls_depth polytopes(const query *q)
 {
     pls_depth d;
-    const enum winner last = last_winner(q);
-    if (q->a->shape->dimension == 3)
+    if (last_winner(q) != POLYTOPES) forget(q);
+    if (pls_polytope_depth(q->a, q->b, q->state + OWN, &d))
     {
-        if (last != POLYTOPES) forget(q);
-        if (pls_polytope_depth(q->a, q->b, q->state + OWN, &d))
-        {
-            q->state[WINNER] = POLYTOPES;
-            count(q, d.iterations, &d);
-            return d;
-        }
-        ++q->counts->fallbacks;
-        forget(q);
+        q->state[WINNER] = POLYTOPES;
+        count(q, d.iterations, &d);
+        return d;
     }
+    ++q->counts->fallbacks;
+    forget(q);
     return incremental(q);
 }
 

@@ -9,6 +9,8 @@
 // up to the nearest plane lies in that. If the support point along that plane's normal is no further, this is the depth, the least of all, for two support points and a
 // few planes. If it is further, the surface is pushed out to it as in EPA and asked again. So depths are proved in every step, by a surface that is only seldom made anew.
 //
+// In the plane the surface is a closed line, its faces are edges of two corners.
+//
 // Support points are found by walking uphill from vertex to vertex, from those last asked for.
 
 #include "contact/polytope_depth.h"
@@ -41,9 +43,9 @@ typedef struct corner
 
 typedef struct face
 {
-    pls_vec3 n; ///< outward, unit
-    double d;   ///< of the plane from the origin; infinite for faces without area
-    uint8_t at[3];
+    pls_vec3 n;    ///< outward, unit
+    double d;      ///< of the plane from the origin; infinite for faces without area
+    uint8_t at[3]; ///< in 2D two
 } face;
 
 /// M, in A's frame and units of A's shape.
@@ -52,6 +54,7 @@ typedef struct difference
     const pls_polytope *a, *b;
     pls_vec3 x, y, z, origin; ///< B's frame in A's: columns with B's scale by A's
     double size;
+    int dimension;           ///< as many corners has a face
     uint32_t near_a, near_b; ///< where to look next
     int calls, turns;
     int corner_count, face_count;
@@ -113,6 +116,7 @@ static void place(const pls_posed *a, const pls_posed *b, difference *m)
     m->z = pls_scale(pls_posed_turn_back(a, b->z), ratio);
     m->origin = pls_posed_own(a, b->position);
     m->size = 2.0 * (a->size + b->size) / a->scale;
+    m->dimension = a->shape->dimension;
     m->near_a = m->near_b = 0;
     m->calls = m->turns = 0;
     m->corner_count = m->face_count = 0;
@@ -134,7 +138,7 @@ static bool has_corner(const pls_simplex *s, int stored)
 
 enum verdict { APART, AROUND, UNSURE };
 
-/// Nearest point of M from the corners in `s`. AROUND: the four in `s` hold the origin.
+/// Nearest point of M from the corners in `s`. AROUND: the four (2D: three) in `s` hold the origin.
 static enum verdict gjk(difference *m, pls_simplex *s, pls_vec3 *nearest)
 {
     double least = DBL_MAX;
@@ -142,7 +146,7 @@ static enum verdict gjk(difference *m, pls_simplex *s, pls_vec3 *nearest)
     while (m->turns++ < MOST_TURNS)
     {
         bool inside;
-        pls_vec3 v = pls_simplex_nearest(s, 3, &inside);
+        pls_vec3 v = pls_simplex_nearest(s, m->dimension, &inside);
         if (inside) return AROUND;
         double square = pls_dot(v, v), distance = sqrt(square);
         if (distance <= PLS_TOUCHING * m->size || !(distance < least)) return UNSURE;
@@ -160,9 +164,9 @@ static enum verdict gjk(difference *m, pls_simplex *s, pls_vec3 *nearest)
 
 static void find_plane(const difference *m, face *f)
 {
-    pls_vec3 p = m->corners[f->at[0]].w, u = pls_sub(m->corners[f->at[1]].w, p), v = pls_sub(m->corners[f->at[2]].w, p),
-             n = pls_cross(u, v);
-    double length = pls_length(n), least = 1e-14 * m->size * m->size;
+    pls_vec3 p = m->corners[f->at[0]].w, u = pls_sub(m->corners[f->at[1]].w, p), n = pls_vec(u.y, -u.x, 0.0);
+    if (m->dimension == 3) n = pls_cross(u, pls_sub(m->corners[f->at[2]].w, p));
+    double length = pls_length(n), least = 1e-14 * m->size * (m->dimension == 3 ? m->size : 1.0);
     f->d = DBL_MAX;
     if (!(length > least)) return;
     f->n = pls_scale(n, 1.0 / length);
@@ -188,20 +192,49 @@ static bool add_face(difference *m, uint8_t i, uint8_t j, uint8_t k)
     return f->d > 0.0;
 }
 
-/// The four of GJK as first surface.
-static bool tetrahedron(difference *m, const pls_simplex *s)
+/// The corners of GJK as first surface.
+static bool first_surface(difference *m, const pls_simplex *s)
 {
-    m->corner_count = 4, m->face_count = 0;
-    for (int k = 0; k < 4; ++k) m->corners[k] = (corner){.w = s->point[k].w, .a = a_of(&s->point[k]), .b = b_of(&s->point[k])};
-    pls_vec3 p = m->corners[0].w, u = pls_sub(m->corners[1].w, p), v = pls_sub(m->corners[2].w, p), w = pls_sub(m->corners[3].w, p);
+    m->corner_count = s->count, m->face_count = 0;
+    for (int k = 0; k < s->count; ++k) m->corners[k] = (corner){.w = s->point[k].w, .a = a_of(&s->point[k]), .b = b_of(&s->point[k])};
+    pls_vec3 p = m->corners[0].w, u = pls_sub(m->corners[1].w, p), v = pls_sub(m->corners[2].w, p);
+    pls_vec3 inward = m->dimension == 3 ? pls_sub(m->corners[3].w, p) : pls_vec(0.0, 0.0, -1.0);
     uint8_t i = 1, j = 2;
-    if (pls_dot(pls_cross(u, v), w) > 0.0) i = 2, j = 1;
+    if (pls_dot(pls_cross(u, v), inward) > 0.0) i = 2, j = 1;
+    if (m->dimension == 2) return add_face(m, 0, i, 0) && add_face(m, i, j, 0) && add_face(m, j, 0, 0);
     return add_face(m, 0, i, j) && add_face(m, 0, 3, i) && add_face(m, i, 3, j) && add_face(m, j, 3, 0);
+}
+
+/// In the plane: of the edges that see the corner, which hang together, only the ends stay.
+static bool grow_in_plane(difference *m, corner c, int chosen)
+{
+    if (m->corner_count == MOST_CORNERS) return false;
+    uint8_t number = (uint8_t)m->corner_count, first = m->faces[chosen].at[0], last = m->faces[chosen].at[1];
+    m->corners[m->corner_count++] = c;
+    m->faces[chosen] = m->faces[--m->face_count];
+    for (int k = 0; k < m->face_count;)
+    {
+        const face f = m->faces[k];
+        const bool joins = f.at[1] == first || f.at[0] == last;
+        if (!joins || !(pls_dot(f.n, c.w) > f.d + rounding * m->size))
+        {
+            ++k;
+            continue;
+        }
+        if (f.at[1] == first)
+            first = f.at[0];
+        else
+            last = f.at[1];
+        m->faces[k] = m->faces[--m->face_count];
+        k = 0; // others may join now
+    }
+    return first != last && add_face(m, first, number, 0) && add_face(m, number, last, 0);
 }
 
 /// Put a corner into the surface in place of the faces it sees.
 static bool grow(difference *m, corner c, int chosen)
 {
+    if (m->dimension == 2) return grow_in_plane(m, c, chosen);
     pls_horizon h;
     h.count = 0;
     if (m->corner_count == MOST_CORNERS) return false;
@@ -222,7 +255,7 @@ static bool grow(difference *m, corner c, int chosen)
 
 static bool is_corner_of(const difference *m, const face *f, const corner *c)
 {
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < m->dimension; ++k)
         if (m->corners[f->at[k]].a == c->a && m->corners[f->at[k]].b == c->b) return true;
     return false;
 }
@@ -247,12 +280,19 @@ static void weigh(const difference *m, const face *f, double weight[3])
 {
     pls_vec3 foot = pls_scale(f->n, f->d), p[3];
     double sum = 0.0;
-    for (int k = 0; k < 3; ++k) p[k] = pls_sub(m->corners[f->at[k]].w, foot);
-    for (int k = 0; k < 3; ++k) weight[k] = pls_dot(f->n, pls_cross(p[(k + 1) % 3], p[(k + 2) % 3])), sum += weight[k];
+    for (int k = 0; k < m->dimension; ++k) p[k] = pls_sub(m->corners[f->at[k]].w, foot);
+    if (m->dimension == 2)
+    {
+        pls_vec3 e = pls_sub(p[1], p[0]);
+        weight[0] = pls_dot(p[1], e), weight[1] = -pls_dot(p[0], e), weight[2] = 0.0;
+    }
+    else
+        for (int k = 0; k < 3; ++k) weight[k] = pls_dot(f->n, pls_cross(p[(k + 1) % 3], p[(k + 2) % 3]));
+    for (int k = 0; k < 3; ++k) sum += weight[k];
     for (int k = 0; k < 3; ++k) weight[k] /= sum;
 }
 
-static double least_of(const double weight[3]) { return fmin(fmin(weight[0], weight[1]), weight[2]); }
+static double least_of(const double weight[3]) { return fmin(fmin(weight[0], weight[1]), weight[2]); } // 2D: the third is 0
 
 /// Of the faces in the plane found (those of a polygon) the one below the origin.
 static int face_below(const difference *m, int nearest, double weight[3])
@@ -307,12 +347,15 @@ static void remember_simplex(const pls_simplex *s, double *memory)
     for (int k = 0; k < s->count; ++k) memory[CORNER + k] = packed(a_of(&s->point[k]), b_of(&s->point[k]));
 }
 
+/// Of a closed surface with so many corners.
+static int faces_of(const difference *m, int corners) { return m->dimension == 2 ? corners : 2 * corners - 4; }
+
 static bool recall_surface(difference *m, const double *memory)
 {
     m->corner_count = (int)memory[CORNERS], m->face_count = (int)memory[FACES];
     const int faces = m->face_count;
     m->face_count = 0; // until all is read
-    if (m->corner_count < 4 || m->corner_count > KEPT_CORNERS || faces != 2 * m->corner_count - 4) return false;
+    if (m->corner_count <= m->dimension || m->corner_count > KEPT_CORNERS || faces != faces_of(m, m->corner_count)) return false;
     for (int k = 0; k < m->corner_count; ++k)
     {
         uint32_t a, b;
@@ -344,15 +387,15 @@ static void remember_surface(const difference *m, int found, double *memory)
     memset(memory, 0, PLS_POLYTOPE_MEMORY * sizeof *memory);
     memset(number, 255, sizeof number);
     for (int f = 0; f < m->face_count; ++f)
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < m->dimension; ++c)
         {
             uint8_t at = m->faces[f].at[c];
             if (number[at] == 255) number[at] = (uint8_t)used++;
         }
     if (used > KEPT_CORNERS)
     {
-        memory[CORNERS] = 3;
-        for (int c = 0; c < 3; ++c)
+        memory[CORNERS] = m->dimension;
+        for (int c = 0; c < m->dimension; ++c)
         {
             const corner *p = &m->corners[m->faces[found].at[c]];
             memory[CORNER + c] = packed(p->a, p->b);
@@ -366,7 +409,7 @@ static void remember_surface(const difference *m, int found, double *memory)
     {
         uint64_t bits = 0;
         for (int f = k; f < k + FACES_PER_NUMBER && f < m->face_count; ++f)
-            for (int c = 0; c < 3; ++c) bits |= (uint64_t)number[m->faces[f].at[c]] << (12 * (f - k) + 4 * c);
+            for (int c = 0; c < m->dimension; ++c) bits |= (uint64_t)number[m->faces[f].at[c]] << (12 * (f - k) + 4 * c);
         memory[FACE + k / FACES_PER_NUMBER] = (double)bits;
     }
 }
@@ -391,8 +434,16 @@ static void finish_apart(const pls_posed *a, const pls_posed *b, const differenc
 {
     pls_vec3 on_a = pls_vec(0.0, 0.0, 0.0);
     double distance = pls_length(v);
+    pls_vec3 n = pls_scale(v, -1.0 / distance);
+    if (m->dimension == 2 && s->count == 2) // across the edge: of a short v the direction would not be as exact
+    {
+        pls_vec3 e = pls_unit(pls_sub(s->point[1].w, s->point[0].w));
+        n = pls_vec(e.y, -e.x, 0.0);
+        if (pls_dot(n, v) > 0.0) n = pls_scale(n, -1.0);
+        distance = -pls_dot(n, s->point[0].w);
+    }
     for (int k = 0; k < s->count; ++k) on_a = pls_add(on_a, pls_scale(m->a->vertex[a_of(&s->point[k])], s->weight[k]));
-    finish(a, b, m, on_a, pls_scale(v, -1.0 / distance), -distance, out);
+    finish(a, b, m, on_a, n, -distance, out);
 }
 
 static void finish_overlap(const pls_posed *a, const pls_posed *b, const difference *m, int nearest, pls_depth *out)
@@ -400,7 +451,7 @@ static void finish_overlap(const pls_posed *a, const pls_posed *b, const differe
     double weight[3];
     const face *f = &m->faces[nearest], *below = &m->faces[face_below(m, nearest, weight)];
     pls_vec3 on_a = pls_vec(0.0, 0.0, 0.0);
-    for (int k = 0; k < 3; ++k) on_a = pls_add(on_a, pls_scale(m->a->vertex[m->corners[below->at[k]].a], weight[k]));
+    for (int k = 0; k < m->dimension; ++k) on_a = pls_add(on_a, pls_scale(m->a->vertex[m->corners[below->at[k]].a], weight[k]));
     finish(a, b, m, on_a, f->n, f->d, out);
 }
 
@@ -415,7 +466,7 @@ static bool from_simplex(const pls_posed *a, const pls_posed *b, difference *m, 
         finish_apart(a, b, m, s, v, out);
         return true;
     }
-    int nearest = verdict == AROUND && tetrahedron(m, s) ? touch(m) : -1;
+    int nearest = verdict == AROUND && first_surface(m, s) ? touch(m) : -1;
     if (nearest < 0) return false;
     remember_surface(m, nearest, memory);
     finish_overlap(a, b, m, nearest, out);
@@ -440,8 +491,8 @@ static void outermost(const difference *m, pls_simplex *s)
     const face *best = &m->faces[0];
     for (int k = 1; k < m->face_count; ++k)
         if (m->faces[k].d < best->d) best = &m->faces[k];
-    for (int c = 0; c < 3; ++c) s->point[c] = pair_of(m->corners[best->at[c]]);
-    s->count = 3;
+    for (int c = 0; c < m->dimension; ++c) s->point[c] = pair_of(m->corners[best->at[c]]);
+    s->count = m->dimension;
 }
 
 bool pls_polytope_depth(const pls_posed *a, const pls_posed *b, double memory[PLS_POLYTOPE_MEMORY], pls_depth *out)

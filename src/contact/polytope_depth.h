@@ -7,7 +7,7 @@
 
 enum { PLS_POLYTOPE_MEMORY = 24 };
 
-/// Cores and margins of two shapes with `polytope`, in 3D. `memory` is what the last call left, all zero: nothing. False where rounding got in the way (flat bodies,
+/// Cores and margins of two shapes with `polytope`. `memory` is what the last call left, all zero: nothing. False where rounding got in the way (flat bodies,
 /// cores that just touch): then `memory` is zeroed and another method has to answer. What is answered is exact to rounding.
 bool pls_polytope_depth(const pls_posed *a, const pls_posed *b, double memory[PLS_POLYTOPE_MEMORY], pls_depth *out);
 
