@@ -1,7 +1,7 @@
 // sphere_trace.c -- where rays meet bodies, how much light falls there, and the picture made of that.
 //
 // A shape that is the union of parts (compound, mesh) is drawn as its parts. Balls, triangles, planes and flat shapes are met in closed form. All else by sphere tracing (Hart, Sphere tracing, The Visual Computer 12, 1996) with steps longer than the
-// distance, taken back where two unbounding spheres do not touch (Keinert et al., Enhanced sphere tracing, STAG 2014), and a bisection in the last step. Shadows are
+// distance, taken back where two unbounding spheres do not touch (Keinert et al., Enhanced sphere tracing, STAG 2014), and regula falsi in the last step. Shadows are
 // soft by how close a ray to the light passes, over how far it has gone, instead of by many rays. Each pixel follows from the scene alone, so threads cannot matter.
 // Bodies that let light through are met one after the other, ordered by distance and number.
 
@@ -10,7 +10,16 @@
 
 #include <string.h>
 
-enum { TILE = 16, MOST_SIZE = 16384, MOST_STEPS = 200, BISECTIONS = 24, MOST_LAYERS = 16, MOST_COLUMNS = 512, SHADES = 8192 };
+enum {
+    TILE = 16,
+    MOST_SIZE = 16384,
+    MOST_STEPS = 200,
+    MOST_HALVINGS = 40,
+    NEAREST_STEPS = 3,
+    MOST_LAYERS = 16,
+    MOST_COLUMNS = 512,
+    SHADES = 8192
+};
 static const double relaxation = 1.3;      ///< step over distance
 static const double touch = 1e-5;          ///< of the radius: nearer is on the surface
 static const double thin_line = 2.5e-3;    ///< half the width of a line, of the reach of all bodies
@@ -326,20 +335,69 @@ static bool within(const pls_render_ray *ray, pls_vec3 centre, double radius, do
     return true;
 }
 
-static double bisect(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double outside, double inside)
+/// Narrow a way down to what lies within a box that is thickened by `grow`; false: nothing.
+static bool within_box(pls_vec3 O, pls_vec3 D, pls_vec3 lower, pls_vec3 upper, double grow, double *from, double *to)
 {
-    for (int k = 0; k < BISECTIONS; ++k)
+    const double o[3] = {O.x, O.y, O.z}, d[3] = {D.x, D.y, D.z};
+    const double low[3] = {lower.x, lower.y, lower.z}, high[3] = {upper.x, upper.y, upper.z};
+    for (int k = 0; k < 3; ++k)
     {
-        double t = 0.5 * (outside + inside);
-        if (pls_shape_sdf(shape, pls_add(O, pls_scale(D, t))) > 0.0)
+        double a = low[k] - grow - o[k], b = high[k] + grow - o[k];
+        if (d[k] == 0.0)
+        {
+            if (a > 0.0 || b < 0.0) return false;
+            continue;
+        }
+        double in = (d[k] > 0.0 ? a : b) / d[k], out = (d[k] > 0.0 ? b : a) / d[k];
+        *from = in > *from ? in : *from;
+        *to = out < *to ? out : *to;
+    }
+    return *from <= *to;
+}
+
+/// Where phi = 0 between a point outside and one inside: regula falsi, the Illinois way (Dowell & Jarratt, BIT 11, 1971).
+static double surface_between(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double outside, double phi_out, double inside, double phi_in)
+{
+    double eps = touch * shape->radius;
+    for (int k = 0; k < MOST_HALVINGS && inside - outside > 1e-3 * eps; ++k)
+    {
+        double t = outside + (inside - outside) * phi_out / (phi_out - phi_in), phi = pls_shape_sdf(shape, pls_add(O, pls_scale(D, t)));
+        if (fabs(phi) < 0.01 * eps) return t;
+        if (phi > 0.0)
+        {
             outside = t;
+            phi_out = phi;
+            phi_in *= 0.5;
+        }
         else
+        {
             inside = t;
+            phi_in = phi;
+            phi_out *= 0.5;
+        }
     }
     return outside;
 }
 
-/// All in the shape's frame, where lengths are those of the world over `scale`.
+/// A convex shape lies behind the plane through its nearest point: the ray goes on to that plane, which is Newton's method, from outside all the way. Where the plane turns away the
+/// ray has missed. All in the shape's frame, where lengths are those of the world over `scale`.
+static bool trace_convex(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double from, double to, double *t_hit)
+{
+    double eps = touch * shape->radius, t = from;
+    for (int k = 0; k < MOST_STEPS && t <= to; ++k)
+    {
+        pls_vec3 X = pls_add(O, pls_scale(D, t));
+        double phi = pls_shape_sdf(shape, X);
+        *t_hit = t;
+        if (phi < eps) return true;
+        double away = pls_dot(pls_shape_gradient(shape, X), D);
+        if (away >= 0.0) return false;
+        t -= phi / away;
+    }
+    return false;
+}
+
+/// The same for any shape.
 static bool trace_shape(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double from, double to, double *t_hit)
 {
     double eps = touch * shape->radius, t = from, last = 0.0, step = 0.0, omega = relaxation;
@@ -355,7 +413,7 @@ static bool trace_shape(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double f
         }
         if (phi < eps)
         {
-            *t_hit = phi < 0.0 && step > 0.0 ? bisect(shape, O, D, t - step, t) : t;
+            *t_hit = phi < 0.0 && step > 0.0 ? surface_between(shape, O, D, t - step, last, t, phi) : t;
             return true;
         }
         last = phi;
@@ -365,15 +423,18 @@ static bool trace_shape(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double f
     return false;
 }
 
-/// From `first` on.
-static bool hit_traced(const body *b, const pls_render_ray *ray, double first, double *t)
+/// From `first` on, and before `limit`.
+static bool hit_traced(const body *b, const pls_render_ray *ray, double first, double limit, double *t)
 {
+    const pls_shape *shape = b->item->shape;
     double from, to, scale = b->item->scale;
     if (!within(ray, b->centre, b->radius * (1.0 + 1e-9), &from, &to) || to <= fmax(first, 0.0)) return false;
     from = fmax(from, first);
-    pls_vec3 start = pls_add(ray->origin, pls_scale(ray->direction, from));
-    if (!trace_shape(b->item->shape, to_shape(b->item, start), turn_to_shape(b->item, ray->direction), 0.0, (to - from) / scale, t))
-        return false;
+    if (from > limit) return false;
+    pls_vec3 O = to_shape(b->item, pls_add(ray->origin, pls_scale(ray->direction, from))), D = turn_to_shape(b->item, ray->direction);
+    double begin = 0.0, end = (fmin(to, limit) - from) / scale;
+    if (!within_box(O, D, shape->lower, shape->upper, 1e-6 * shape->radius, &begin, &end)) return false;
+    if (!(shape->convex ? trace_convex : trace_shape)(shape, O, D, begin, end, t)) return false;
     *t = from + *t * scale;
     return true;
 }
@@ -438,7 +499,8 @@ static bool hit_ball(const body *b, const pls_render_ray *ray, double first, dou
     return true;
 }
 
-static bool hit_body(const scene *s, const body *b, const pls_render_ray *ray, double *t)
+/// Before `limit`, if that is easy to say.
+static bool hit_body(const scene *s, const body *b, const pls_render_ray *ray, double limit, double *t)
 {
     double first, last;
     keep_side(s, ray, &first, &last);
@@ -448,7 +510,7 @@ static bool hit_body(const scene *s, const body *b, const pls_render_ray *ray, d
         case TRIANGLE: return hit_triangle(b, ray, first, t) && *t <= last;
         case PLANE: return hit_plane(s, b, ray, t);
         case FLAT: return hit_flat(b, ray, t) && *t >= first && *t <= last;
-        default: return hit_traced(b, ray, first, t) && *t <= last;
+        default: return hit_traced(b, ray, first, limit, t) && *t <= last;
     }
 }
 
@@ -457,7 +519,7 @@ static bool before(hit a, hit b) { return a.t < b.t || (a.t == b.t && a.body < b
 static void try_body(const scene *s, const pls_render_ray *ray, uint32_t k, hit after, hit *best)
 {
     hit found = {.body = k};
-    if (!hit_body(s, &s->bodies[k], ray, &found.t)) return;
+    if (!hit_body(s, &s->bodies[k], ray, best->t, &found.t)) return;
     if (!s->view.orthographic && found.t <= 0.0) return;
     if (before(after, found) && before(found, *best)) *best = found;
 }
@@ -483,23 +545,87 @@ static hit next_hit(const scene *s, const pls_render_ray *ray, uint32_t tile, hi
 
 static double smooth(double x) { return x <= 0.0 ? 0.0 : x >= 1.0 ? 1.0 : x * x * (3.0 - 2.0 * x); }
 
+/// A ray to the light beside a body, in the body's frame. Lengths are those of the world.
+typedef struct shadow_ray
+{
+    const pls_shape *shape;
+    double scale, softness, widest, eps;
+    pls_vec3 O, D;
+    double from, to;
+} shadow_ray;
+
+static double shadow_distance(const shadow_ray *r, double t)
+{
+    return r->scale * pls_shape_sdf(r->shape, pls_add(r->O, pls_scale(r->D, t / r->scale)));
+}
+
+static double shadow_slope(const shadow_ray *r, double t)
+{
+    return pls_dot(pls_shape_gradient(r->shape, pls_add(r->O, pls_scale(r->D, t / r->scale))), r->D);
+}
+
+/// What passes at a distance phi after the way t.
+static double pass_at(const shadow_ray *r, double t, double phi)
+{
+    double wide = fmin(r->softness * t, r->widest);
+    return phi < r->eps ? 0.0 : phi < wide ? phi / wide : 1.0;
+}
+
+/// Distances from a convex shape fall and rise along the ray: Newton's method from plane to plane until they rise, then the least one between by regula falsi of the slopes.
+static double pass_convex(const shadow_ray *r)
+{
+    double low = r->from, slope_low = 0.0, t = r->from;
+    for (int k = 0; k < MOST_STEPS && t <= r->to; ++k)
+    {
+        double phi = shadow_distance(r, t), slope;
+        if (phi < r->eps) return 0.0;
+        if ((slope = shadow_slope(r, t)) >= 0.0)
+        {
+            double high = t, slope_high = slope;
+            for (int n = 0; n < NEAREST_STEPS && slope_low < 0.0 && slope_high > 0.0; ++n)
+            {
+                t = low - slope_low * (high - low) / (slope_high - slope_low);
+                slope = shadow_slope(r, t);
+                *(slope < 0.0 ? &low : &high) = t;
+                *(slope < 0.0 ? &slope_low : &slope_high) = slope;
+            }
+            return pass_at(r, t, shadow_distance(r, t));
+        }
+        if (t == r->to) return pass_at(r, t, phi);
+        low = t;
+        slope_low = slope;
+        t = fmin(t - phi / slope, r->to);
+    }
+    return 1.0;
+}
+
+static double pass_any(const shadow_ray *r)
+{
+    double pass = 1.0;
+    for (double t = r->from, k = 0; t <= r->to && k < MOST_STEPS / 2 && pass > 0.0; ++k)
+    {
+        double phi = shadow_distance(r, t);
+        pass = fmin(pass, pass_at(r, t, phi));
+        t += phi;
+    }
+    return pass;
+}
+
 /// What a traced body lets through to the point p.
 static double pass_traced(const scene *s, const body *b, pls_vec3 p)
 {
-    double from, to, scale = b->item->scale, softness = s->options->softness, eps = 10.0 * touch * b->radius, pass = 1.0;
-    pls_render_ray ray = {p, s->light};
-    if (!within(&ray, b->centre, shadow_radius(s, b), &from, &to)) return 1.0;
-    pls_vec3 O = to_shape(b->item, p), D = turn_to_shape(b->item, s->light);
-    double t = fmax(from, 2e-3 * b->radius);
-    for (int k = 0; k < MOST_STEPS / 2 && t < to; ++k)
-    {
-        double phi = scale * pls_shape_sdf(b->item->shape, pls_add(O, pls_scale(D, t / scale)));
-        double wide = fmin(softness * t, widest_penumbra * b->radius);
-        if (phi < eps) return 0.0;
-        if (phi < wide) pass = fmin(pass, phi / wide);
-        t += phi;
-    }
-    return smooth(pass);
+    const pls_shape *shape = b->item->shape;
+    double from, to, scale = b->item->scale;
+    if (!within(&(pls_render_ray){p, s->light}, b->centre, shadow_radius(s, b), &from, &to)) return 1.0;
+    shadow_ray r = {.shape = shape, .scale = scale, .softness = s->options->softness, .widest = widest_penumbra * b->radius};
+    r.eps = 10.0 * touch * b->radius;
+    r.O = to_shape(b->item, p);
+    r.D = turn_to_shape(b->item, s->light);
+    double begin = fmax(from, 2e-3 * b->radius) / scale, end = to / scale, penumbra = fmin(r.softness * to, r.widest) / scale;
+    if (!within_box(r.O, r.D, shape->lower, shape->upper, penumbra, &begin, &end)) return 1.0;
+    r.from = begin * scale;
+    r.to = end * scale;
+    return smooth(shape->convex ? pass_convex(&r) : pass_any(&r));
 }
 
 /// What a ball lets through.
