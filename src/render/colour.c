@@ -184,12 +184,27 @@ static void bar_title(pls_render_picture *picture, const pls_render_options *opt
     pls_render_text(picture, x > 0 ? x : 0, place[1] - 2 * PLS_GLYPH_HEIGHT * size, size, rgb, text);
 }
 
+/// Veil a rectangle, so that what is written there can be read.
+static void veil(pls_render_picture *picture, const pls_render_options *options, const int place[4])
+{
+    const double cover = 0.8 * options->background[3] / 255.0;
+    for (int y = place[1] > 0 ? place[1] : 0; y < place[3] && y < picture->height; ++y)
+    {
+        for (int x = place[0] > 0 ? place[0] : 0; x < place[2] && x < picture->width; ++x)
+        {
+            uint8_t *pixel = &picture->rgba[4 * ((size_t)y * (size_t)picture->width + (size_t)x)];
+            for (int c = 0; c < 3; ++c) pixel[c] = (uint8_t)lround(pixel[c] + cover * (options->background[c] - pixel[c]));
+        }
+    }
+}
+
 void pls_render_caption(pls_render_picture *picture, const pls_render_options *options)
 {
     if (!options->caption) return;
     uint8_t rgb[3];
     ink(options, rgb);
-    int size = text_size(options);
+    int size = text_size(options), top = options->height - (PLS_GLYPH_HEIGHT + 7) * size;
+    veil(picture, options, (const int[4]){0, top, pls_render_text_width(options->caption, size) + 9 * size, options->height});
     pls_render_text(picture, 5 * size, options->height - (PLS_GLYPH_HEIGHT + 4) * size, size, rgb, options->caption);
 }
 
@@ -199,6 +214,9 @@ void pls_render_bar(pls_render_picture *picture, const pls_render_options *optio
     pls_render_bar_place(options, place);
     if (place[0] < 0 || place[3] - place[1] < 8) return; // too small a picture to be read
     uint8_t rgb[3];
+    int size = text_size(options), strip = options->width - pls_render_bar_strip(options);
+    veil(picture, options,
+         (const int[4]){strip, place[1] - (2 * PLS_GLYPH_HEIGHT + 6) * size, options->width, place[3] + PLS_GLYPH_HEIGHT * size});
     for (int y = place[1]; y < place[3]; ++y)
     {
         double value = bar_value(options, (place[3] - 1 - y) / (double)(place[3] - 1 - place[1]));
