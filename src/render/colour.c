@@ -136,11 +136,12 @@ static double tick_step(double range)
     return (part < 1.5 ? 1.0 : part < 3.5 ? 2.0 : part < 7.5 ? 5.0 : 10.0) * power;
 }
 
-static void tick(pls_render_picture *picture, const int place[4], int size, double fraction, const uint8_t rgb[3], const char *label)
+static void tick(pls_render_picture *picture, const pls_render_options *options, const int place[4], double fraction, const uint8_t rgb[3],
+                 const char *label)
 {
-    int y = place[3] - 1 - (int)lround(fraction * (place[3] - 1 - place[1]));
+    int size = text_size(options), y = place[3] - 1 - (int)lround(fraction * (place[3] - 1 - place[1]));
     for (int x = place[2]; x < place[2] + 2 * size; ++x) set_pixel(picture, x, y, rgb);
-    pls_render_text(picture, place[2] + 4 * size, y - 3 * size, size, rgb, label);
+    pls_render_text(picture, place[2] + 4 * size, y - 3 * size, size, rgb, options->background, label);
 }
 
 static void value_ticks(pls_render_picture *picture, const pls_render_options *options, const int place[4], const uint8_t rgb[3])
@@ -152,7 +153,7 @@ static void value_ticks(pls_render_picture *picture, const pls_render_options *o
         if (fraction > 1.0 + 1e-9) break;
         char label[32];
         snprintf(label, sizeof label, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
-        tick(picture, place, text_size(options), fmin(fmax(fraction, 0.0), 1.0), rgb, label);
+        tick(picture, options, place, fmin(fmax(fraction, 0.0), 1.0), rgb, label);
     }
 }
 
@@ -164,7 +165,7 @@ static void category_ticks(pls_render_picture *picture, const pls_render_options
     {
         char label[LABEL_SIZE];
         category_label(options, k, label);
-        tick(picture, place, text_size(options), (k + 0.5) / count, rgb, label);
+        tick(picture, options, place, (k + 0.5) / count, rgb, label);
     }
 }
 
@@ -181,21 +182,7 @@ static void bar_title(pls_render_picture *picture, const pls_render_options *opt
     title_text(options, text);
     int size = text_size(options), right = options->width - 4 * size, x = place[0];
     if (x + pls_render_text_width(text, size) > right) x = right - pls_render_text_width(text, size);
-    pls_render_text(picture, x > 0 ? x : 0, place[1] - 2 * PLS_GLYPH_HEIGHT * size, size, rgb, text);
-}
-
-/// Veil a rectangle, so that what is written there can be read.
-static void veil(pls_render_picture *picture, const pls_render_options *options, const int place[4])
-{
-    const double cover = 0.8 * options->background[3] / 255.0;
-    for (int y = place[1] > 0 ? place[1] : 0; y < place[3] && y < picture->height; ++y)
-    {
-        for (int x = place[0] > 0 ? place[0] : 0; x < place[2] && x < picture->width; ++x)
-        {
-            uint8_t *pixel = &picture->rgba[4 * ((size_t)y * (size_t)picture->width + (size_t)x)];
-            for (int c = 0; c < 3; ++c) pixel[c] = (uint8_t)lround(pixel[c] + cover * (options->background[c] - pixel[c]));
-        }
-    }
+    pls_render_text(picture, x > 0 ? x : 0, place[1] - 2 * PLS_GLYPH_HEIGHT * size, size, rgb, options->background, text);
 }
 
 void pls_render_caption(pls_render_picture *picture, const pls_render_options *options)
@@ -203,9 +190,8 @@ void pls_render_caption(pls_render_picture *picture, const pls_render_options *o
     if (!options->caption) return;
     uint8_t rgb[3];
     ink(options, rgb);
-    int size = text_size(options), top = options->height - (PLS_GLYPH_HEIGHT + 7) * size;
-    veil(picture, options, (const int[4]){0, top, pls_render_text_width(options->caption, size) + 9 * size, options->height});
-    pls_render_text(picture, 5 * size, options->height - (PLS_GLYPH_HEIGHT + 4) * size, size, rgb, options->caption);
+    int size = text_size(options);
+    pls_render_text(picture, 5 * size, options->height - (PLS_GLYPH_HEIGHT + 4) * size, size, rgb, options->background, options->caption);
 }
 
 void pls_render_bar(pls_render_picture *picture, const pls_render_options *options)
@@ -214,9 +200,6 @@ void pls_render_bar(pls_render_picture *picture, const pls_render_options *optio
     pls_render_bar_place(options, place);
     if (place[0] < 0 || place[3] - place[1] < 8) return; // too small a picture to be read
     uint8_t rgb[3];
-    int size = text_size(options), strip = options->width - pls_render_bar_strip(options);
-    veil(picture, options,
-         (const int[4]){strip, place[1] - (2 * PLS_GLYPH_HEIGHT + 6) * size, options->width, place[3] + PLS_GLYPH_HEIGHT * size});
     for (int y = place[1]; y < place[3]; ++y)
     {
         double value = bar_value(options, (place[3] - 1 - y) / (double)(place[3] - 1 - place[1]));

@@ -281,6 +281,7 @@ static void measure(scene *s)
 /// How far from its centre a body may dim the light: radius and penumbra.
 static double shadow_radius(const scene *s, const body *b)
 {
+    if (b->kind == TRIANGLE) return b->radius;
     return b->radius + fmin(widest_penumbra * b->radius, 2.0 * s->reach * s->options->softness);
 }
 
@@ -379,10 +380,28 @@ static double surface_between(const pls_shape *shape, pls_vec3 O, pls_vec3 D, do
     return outside;
 }
 
+/// What is left of a ray behind all faces of a convex polytope.
+static bool meet_polytope(const pls_polytope *p, pls_vec3 O, pls_vec3 D, double from, double to, double *t_hit)
+{
+    for (uint32_t f = 0; f < p->face_count; ++f)
+    {
+        pls_vec3 n = p->face_normal[f];
+        double above = pls_dot(n, pls_sub(O, p->vertex[p->face_vertex[p->face_start[f]]])), rise = pls_dot(n, D);
+        if (rise == 0.0 && above > 0.0) return false;
+        if (rise < 0.0) from = fmax(from, -above / rise);
+        if (rise > 0.0) to = fmin(to, -above / rise);
+        if (from > to) return false;
+    }
+    *t_hit = from;
+    return true;
+}
+
 /// A convex shape lies behind the plane through its nearest point: the ray goes on to that plane, which is Newton's method, from outside all the way. Where the plane turns away the
 /// ray has missed. All in the shape's frame, where lengths are those of the world over `scale`.
 static bool trace_convex(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double from, double to, double *t_hit)
 {
+    if (shape->margin == 0.0 && shape->polytope && shape->polytope->face_count > 3)
+        return meet_polytope(shape->polytope, O, D, from, to, t_hit);
     double eps = touch * shape->radius, t = from;
     for (int k = 0; k < MOST_STEPS && t <= to; ++k)
     {
@@ -641,20 +660,11 @@ static double pass_ball(const scene *s, const body *b, pls_vec3 p)
     return gap <= 0.0 ? 0.0 : smooth(gap / wide);
 }
 
-/// What a triangle lets through: by how far beside it the ray meets its plane.
+/// What a triangle lets through. Its shadow is sharp: those of neighbours then join without a seam.
 static double pass_triangle(const scene *s, const body *b, pls_vec3 p)
 {
-    double towards = pls_dot(b->normal, s->light), t = pls_dot(b->normal, pls_sub(b->corner[0], p)) / towards;
-    if (!(t > 2e-3 * b->radius) || !isfinite(t)) return 1.0;
-    pls_vec3 q = pls_add(p, pls_scale(s->light, t));
-    double beside = 0.0;
-    for (int k = 0; k < 3; ++k)
-    {
-        pls_vec3 edge = pls_sub(b->corner[(k + 1) % 3], b->corner[k]), out = pls_cross(edge, b->normal);
-        beside = fmax(beside, pls_dot(out, pls_sub(q, b->corner[k])) / pls_length(out));
-    }
-    double wide = fmin(s->options->softness * t, widest_penumbra * b->radius);
-    return beside <= 0.0 ? 0.0 : wide > 0.0 ? smooth(beside * fabs(towards) / wide) : 1.0;
+    double t;
+    return hit_triangle(b, &(pls_render_ray){p, s->light}, 2e-3 * b->radius, &t) ? 0.0 : 1.0;
 }
 
 static double pass_body(const scene *s, const body *b, pls_vec3 p)
