@@ -61,7 +61,7 @@ double pls_render_linear_from_srgb(uint8_t byte) // IEC 61966-2-1
 
 // ---- the bar --------------------------------------------------------------------------------------------------------------------------
 
-static int text_size(const pls_render_options *options) { return options->height >= 1000 ? 3 : options->height >= 500 ? 2 : 1; }
+static int text_size(const pls_render_options *options) { return options->height >= 1000 ? 3 : options->height >= 420 ? 2 : 1; }
 
 static int category_count(const pls_render_options *options)
 {

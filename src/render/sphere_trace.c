@@ -154,7 +154,7 @@ static body_kind kind_of(const pls_shape *shape)
 
 static void set_body(body *b, const pls_render_item *item, const pls_render_options *options)
 {
-    static const uint8_t wall[3] = {215, 215, 215};
+    static const uint8_t wall[3] = {215, 215, 215}, flat_wall[3] = {130, 130, 130};
     *b = (body){.centre = item->position, .item = item, .opacity = fminf(fmaxf(item->opacity, 0.0f), 1.0f)};
     b->radius = item->radius > 0.0 ? item->radius : item->shape->radius * item->scale;
     uint8_t rgb[3];
@@ -162,7 +162,7 @@ static void set_body(body *b, const pls_render_item *item, const pls_render_opti
         memcpy(rgb, options->plain, sizeof rgb);
     else
         pls_render_colour(options->colours, item->value, options->low, options->high, rgb);
-    if (item->shape->ops->unbounded || item->shape->ops->wall) memcpy(rgb, wall, sizeof rgb);
+    if (item->shape->ops->unbounded || item->shape->ops->wall) memcpy(rgb, item->shape->dimension == 2 ? flat_wall : wall, sizeof rgb);
     for (int c = 0; c < 3; ++c) b->albedo[c] = (float)pls_render_linear_from_srgb(rgb[c]);
     b->kind = kind_of(item->shape);
     if (b->kind == PLANE) pls_render_plane_of(item, &b->normal, &b->centre);

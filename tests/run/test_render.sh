@@ -147,17 +147,18 @@ def read(path):
             width, height, depth, kind = struct.unpack(">IIBB", data[:10])
         if name == b"IDAT":
             packed += data
-    assert depth == 8 and kind == 6, (path, depth, kind)
-    raw, rows, before = zlib.decompress(packed), [], bytes(4 * width)
+    assert depth == 8 and kind in (2, 6), (path, depth, kind)
+    n = 3 if kind == 2 else 4
+    raw, rows, before = zlib.decompress(packed), [], bytes(n * width)
     for y in range(height):
-        line = bytearray(raw[y * (4 * width + 1):(y + 1) * (4 * width + 1)])
+        line = bytearray(raw[y * (n * width + 1):(y + 1) * (n * width + 1)])
         how = line.pop(0)
-        for x in range(4 * width):
-            a, b, c = (line[x - 4] if x >= 4 else 0), before[x], (before[x - 4] if x >= 4 else 0)
+        for x in range(n * width):
+            a, b, c = (line[x - n] if x >= n else 0), before[x], (before[x - n] if x >= n else 0)
             p = a + b - c
             paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
             line[x] = (line[x] + (0, a, b, (a + b) // 2, paeth)[how]) & 255
-        rows.append([tuple(line[4 * x:4 * x + 4]) for x in range(width)])
+        rows.append([tuple(line[n * x:n * x + n]) + (255,) * (4 - n) for x in range(width)])
         before = line
     return rows
 
