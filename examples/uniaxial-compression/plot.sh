@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Plot the compression: plot.sh <run directory>; makes stress-strain.png (P1 figure 8) and history.png there. Needs gnuplot.
+# Plot the compression: plot.sh <run directory>; makes stress-strain.png (P1 figure 8), history.png and packing.png there. Needs gnuplot;
+# PARTICLS is the program, particls by default.
 set -euo pipefail
 results=${1:?usage: plot.sh <run directory>}
 
@@ -38,3 +39,5 @@ set ylabel 'D_{zzzz} [Pa]'
 plot tangent using (speed * column('time [s]')):(column('D_zzzz [Pa]')) with linespoints ls 3
 unset multiplot
 GNUPLOT
+
+"${PARTICLS:-particls}" render "$results" -o "$results/packing.png" --time 0.8 --colour velocity --range 0:0.4 --size 480x320 --quiet

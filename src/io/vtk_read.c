@@ -13,6 +13,7 @@
 #include <zlib.h>
 
 static const char appended_start[] = "<AppendedData encoding=\"raw\">\n_";
+static const char file_end[] = "\n  </AppendedData>\n</VTKFile>\n";
 enum { MOST_EXPANSION = 1040 }; ///< deflate cannot expand by more than 1032
 
 /// A file being read.
@@ -153,6 +154,8 @@ static pls_status read_text(pls_frame *frame, reader *r, char *text, size_t size
     *data = '\0';
     r->data = data + strlen(appended_start);
     r->size = size - (size_t)(r->data - text);
+    if (r->size < strlen(file_end) || memcmp(text + size - strlen(file_end), file_end, strlen(file_end)) != 0)
+        return corrupt(r, "it is cut off");
     PLS_TRY(read_time(frame, r));
     for (const char *element = text; (element = strstr(element, "<DataArray ")); ++element) PLS_TRY(read_element(frame, r, element));
     return check_rows(frame, r);

@@ -61,7 +61,7 @@ double pls_render_linear_from_srgb(uint8_t byte) // IEC 61966-2-1
 
 // ---- the bar --------------------------------------------------------------------------------------------------------------------------
 
-static int text_size(const pls_render_options *options) { return options->height >= 1000 ? 3 : options->height >= 500 ? 2 : 1; }
+static int text_size(const pls_render_options *options) { return options->height >= 1000 ? 3 : options->height >= 420 ? 2 : 1; }
 
 static int category_count(const pls_render_options *options)
 {
@@ -136,11 +136,12 @@ static double tick_step(double range)
     return (part < 1.5 ? 1.0 : part < 3.5 ? 2.0 : part < 7.5 ? 5.0 : 10.0) * power;
 }
 
-static void tick(pls_render_picture *picture, const int place[4], int size, double fraction, const uint8_t rgb[3], const char *label)
+static void tick(pls_render_picture *picture, const pls_render_options *options, const int place[4], double fraction, const uint8_t rgb[3],
+                 const char *label)
 {
-    int y = place[3] - 1 - (int)lround(fraction * (place[3] - 1 - place[1]));
+    int size = text_size(options), y = place[3] - 1 - (int)lround(fraction * (place[3] - 1 - place[1]));
     for (int x = place[2]; x < place[2] + 2 * size; ++x) set_pixel(picture, x, y, rgb);
-    pls_render_text(picture, place[2] + 4 * size, y - 3 * size, size, rgb, label);
+    pls_render_text(picture, place[2] + 4 * size, y - 3 * size, size, rgb, options->background, label);
 }
 
 static void value_ticks(pls_render_picture *picture, const pls_render_options *options, const int place[4], const uint8_t rgb[3])
@@ -152,7 +153,7 @@ static void value_ticks(pls_render_picture *picture, const pls_render_options *o
         if (fraction > 1.0 + 1e-9) break;
         char label[32];
         snprintf(label, sizeof label, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
-        tick(picture, place, text_size(options), fmin(fmax(fraction, 0.0), 1.0), rgb, label);
+        tick(picture, options, place, fmin(fmax(fraction, 0.0), 1.0), rgb, label);
     }
 }
 
@@ -164,7 +165,7 @@ static void category_ticks(pls_render_picture *picture, const pls_render_options
     {
         char label[LABEL_SIZE];
         category_label(options, k, label);
-        tick(picture, place, text_size(options), (k + 0.5) / count, rgb, label);
+        tick(picture, options, place, (k + 0.5) / count, rgb, label);
     }
 }
 
@@ -181,7 +182,7 @@ static void bar_title(pls_render_picture *picture, const pls_render_options *opt
     title_text(options, text);
     int size = text_size(options), right = options->width - 4 * size, x = place[0];
     if (x + pls_render_text_width(text, size) > right) x = right - pls_render_text_width(text, size);
-    pls_render_text(picture, x > 0 ? x : 0, place[1] - 2 * PLS_GLYPH_HEIGHT * size, size, rgb, text);
+    pls_render_text(picture, x > 0 ? x : 0, place[1] - 2 * PLS_GLYPH_HEIGHT * size, size, rgb, options->background, text);
 }
 
 void pls_render_caption(pls_render_picture *picture, const pls_render_options *options)
@@ -190,7 +191,7 @@ void pls_render_caption(pls_render_picture *picture, const pls_render_options *o
     uint8_t rgb[3];
     ink(options, rgb);
     int size = text_size(options);
-    pls_render_text(picture, 5 * size, options->height - (PLS_GLYPH_HEIGHT + 4) * size, size, rgb, options->caption);
+    pls_render_text(picture, 5 * size, options->height - (PLS_GLYPH_HEIGHT + 4) * size, size, rgb, options->background, options->caption);
 }
 
 void pls_render_bar(pls_render_picture *picture, const pls_render_options *options)

@@ -18,18 +18,16 @@ void pls_render_picture_free(pls_render_picture *picture)
     *picture = (pls_render_picture){0};
 }
 
-/// The whole file, in memory.
-static pls_status compress_picture(const pls_render_picture *picture, const char *path, uint8_t **data, size_t *size)
+/// The whole file, in memory; `format` is libpng's of `pixels`.
+static pls_status compress_pixels(const pls_render_picture *picture, png_uint_32 format, const uint8_t *pixels, const char *path,
+                                  uint8_t **data, size_t *size)
 {
-    *data = NULL;
-    if (!picture->rgba || picture->width < 1 || picture->height < 1)
-        return pls_fail(PLS_INVALID_ARGUMENT, "cannot write \"%s\": the picture is empty; draw it first", path);
-    png_image image = {.version = PNG_IMAGE_VERSION, .format = PNG_FORMAT_RGBA};
+    png_image image = {.version = PNG_IMAGE_VERSION, .format = format};
     image.width = (png_uint_32)picture->width;
     image.height = (png_uint_32)picture->height;
     png_alloc_size_t room = PNG_IMAGE_PNG_SIZE_MAX(image);
     PLS_TRY(pls_allocate(data, room, 1, "a PNG file"));
-    if (png_image_write_to_memory(&image, *data, &room, 0, picture->rgba, 0, NULL))
+    if (png_image_write_to_memory(&image, *data, &room, 0, pixels, 0, NULL))
     {
         *size = room;
         return PLS_OK;
@@ -38,11 +36,42 @@ static pls_status compress_picture(const pls_render_picture *picture, const char
     return pls_fail(PLS_IO, "cannot compress the picture for \"%s\": %s; try a smaller one", path, image.message);
 }
 
+/// All pictures of an animation have one format, so theirs always has an opacity.
+static pls_status compress_picture(const pls_render_picture *picture, const char *path, uint8_t **data, size_t *size)
+{
+    *data = NULL;
+    if (!picture->rgba || picture->width < 1 || picture->height < 1)
+        return pls_fail(PLS_INVALID_ARGUMENT, "cannot write \"%s\": the picture is empty; draw it first", path);
+    return compress_pixels(picture, PNG_FORMAT_RGBA, picture->rgba, path, data, size);
+}
+
+/// Without the opacity, where there is nothing to see through: a smaller file.
+static pls_status compress_opaque(const pls_render_picture *picture, const char *path, uint8_t **data, size_t *size)
+{
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    uint8_t *rgb = NULL;
+    PLS_TRY(pls_allocate(&rgb, pixels, 3, "a picture"));
+    for (size_t k = 0; k < pixels; ++k) memcpy(&rgb[3 * k], &picture->rgba[4 * k], 3);
+    pls_status status = compress_pixels(picture, PNG_FORMAT_RGB, rgb, path, data, size);
+    pls_release(&rgb);
+    return status;
+}
+
+static bool is_opaque(const pls_render_picture *picture)
+{
+    size_t pixels = picture->rgba ? (size_t)picture->width * (size_t)picture->height : 0;
+    for (size_t k = 0; k < pixels; ++k)
+    {
+        if (picture->rgba[4 * k + 3] != 255) return false;
+    }
+    return pixels > 0;
+}
+
 pls_status pls_png_write(const char *path, const pls_render_picture *picture)
 {
-    uint8_t *data;
+    uint8_t *data = NULL;
     size_t size = 0;
-    PLS_TRY(compress_picture(picture, path, &data, &size));
+    PLS_TRY((is_opaque(picture) ? compress_opaque : compress_picture)(picture, path, &data, &size));
     pls_status status = pls_write_file(path, data, size);
     pls_release(&data);
     return status;

@@ -140,7 +140,8 @@ void pls_render_bar_place(const pls_render_options *options, int place[4]);
 
 enum { PLS_GLYPH_WIDTH = 6, PLS_GLYPH_HEIGHT = 8 }; ///< with the gap between glyphs and lines [pixels at size 1]
 int pls_render_text_width(const char *text, int size);
-void pls_render_text(pls_render_picture *picture, int x, int y, int size, const uint8_t rgb[3], const char *text);
+/// With a rim of the colour `ground` (sRGB and opacity) around the letters, so that they can be read on anything.
+void pls_render_text(pls_render_picture *picture, int x, int y, int size, const uint8_t rgb[3], const uint8_t ground[4], const char *text);
 
 // ---- rays -----------------------------------------------------------------------------------------------------------------------------
 

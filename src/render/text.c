@@ -10,6 +10,7 @@
 
 enum { ROWS = 7, DOTS = 5 };
 static const double half_stroke = 0.5; ///< of a stroke's width [dots]
+static const double rim_width = 1.0, rim_opacity = 0.7;
 
 typedef struct glyph
 {
@@ -174,26 +175,38 @@ static void blend(uint8_t pixel[4], const uint8_t rgb[3], double cover)
     pixel[3] = (uint8_t)lround(255.0 * opacity);
 }
 
-static void draw_glyph(pls_render_picture *picture, const glyph *g, int left, int top, int size, const uint8_t rgb[3])
+static double cover_of(double distance, double half, int size) { return fmin(fmax(0.5 + (half - distance) * size, 0.0), 1.0); }
+
+/// The letter itself, or the rim that goes under it.
+static void draw_glyph(pls_render_picture *picture, const glyph *g, int left, int top, int size, double half, double opacity,
+                       const uint8_t rgb[3])
 {
+    int rim = 1 + (int)ceil((half - half_stroke) * size);
     stroke strokes[MOST_STROKES];
     int count = make_strokes(g, strokes);
-    for (int j = -1; j <= ROWS * size; ++j)
+    for (int j = -rim; j < ROWS * size + rim; ++j)
     {
-        for (int i = -1; i <= DOTS * size; ++i)
+        for (int i = -rim; i < DOTS * size + rim; ++i)
         {
             int x = left + i, y = top + j;
             if (x < 0 || y < 0 || x >= picture->width || y >= picture->height) continue;
             double distance = INFINITY;
             for (int k = 0; k < count; ++k)
                 distance = fmin(distance, distance_to(&strokes[k], (i + 0.5) / size - 0.5, (j + 0.5) / size - 0.5));
-            double cover = 0.5 + (half_stroke - distance) * size;
-            blend(&picture->rgba[4 * ((size_t)y * (size_t)picture->width + (size_t)x)], rgb, fmin(fmax(cover, 0.0), 1.0));
+            uint8_t *pixel = &picture->rgba[4 * ((size_t)y * (size_t)picture->width + (size_t)x)];
+            blend(pixel, rgb, opacity * cover_of(distance, half, size));
         }
     }
 }
 
-void pls_render_text(pls_render_picture *picture, int x, int y, int size, const uint8_t rgb[3], const char *text)
+void pls_render_text(pls_render_picture *picture, int x, int y, int size, const uint8_t rgb[3], const uint8_t ground[4], const char *text)
 {
-    for (; *text; x += PLS_GLYPH_WIDTH * size) draw_glyph(picture, next_glyph(&text), x, y, size, rgb);
+    for (int layer = 0; layer < 2; ++layer)
+    {
+        bool rim = layer == 0;
+        int left = x;
+        for (const char *rest = text; *rest; left += PLS_GLYPH_WIDTH * size)
+            draw_glyph(picture, next_glyph(&rest), left, y, size, rim ? half_stroke + rim_width : half_stroke,
+                       rim ? rim_opacity * ground[3] / 255.0 : 1.0, rim ? ground : rgb);
+    }
 }

@@ -57,7 +57,7 @@ expect 0 "particls 0." --version
 expect 0 "particls 0." version
 expect 2 "did you mean 'run'?" rnu
 expect 2 "there is no verb 'juggle'" juggle
-for verb in run resume check info schema plugin; do
+for verb in run resume check info render schema plugin; do
     expect 0 "usage: particls $verb" "$verb" --help
     expect 0 "example:" help "$verb"
     expect 2 "there is no option '--nonsense'" "$verb" --nonsense
@@ -78,6 +78,7 @@ expect 2 "--until takes a time" run small.yaml --until soon
 expect 2 "--until takes a time" run small.yaml --until -1
 expect 2 "run directory is missing" resume
 expect 2 "file or directory is missing" info
+expect 2 "is missing" render
 expect 2 "no argument is expected" schema something
 expect 2 "--cflags" plugin
 
