@@ -61,7 +61,7 @@ TEXT
 ## Energy
 
 $collisions collisions of each pair without friction and damping: a linear spring, 800 steps per contact (half a period of the spring with the mass that a push at the first touch moves), a stiffness at which a central impact overlaps by 2 % of the size, both grains spinning, random turns and offsets; velocity Verlet
-(\`tests/support/two_bodies.c\`). The same collisions for both methods. Queries that ADMM does not solve in 1000 iterations are answered by the depth, as in simulations. Numbers are |energy after / energy before - 1|. For the depth at most 1e-5 (median) and 2e-3 (worst) are allowed, $outside of $pairs pairs are outside of that. *Not solved* counts queries of the depth and of eq. 14: ADMM then circles slowly where an edge of one grain is nearly parallel to a ridge of the other's
+(\`tests/support/two_bodies.c\`). The same collisions for both methods. Queries that ADMM does not solve in 1000 iterations are answered by the depth, as in simulations. Numbers are |energy after / energy before - 1|. For the depth at most 1e-5 (median) and 2e-3 (worst) are allowed; pairs outside of that: $outside of $pairs. *Not solved* counts queries of the depth and of eq. 14: ADMM then circles slowly where an edge of one grain is nearly parallel to a ridge of the other's
 distance.
 
 ![Change of energy by pair of shapes](figures/contact-energy.svg)
