@@ -76,7 +76,7 @@ record() # <case> <round> <program>: a line of JSON from standard input goes to 
     local line
     IFS= read -r line
     printf '{"case": "%s", "round": %s, "program": "%s", %s\n' "$1" "$2" "$3" "${line#\{}" >>"$results/$1.jsonl"
-    printf '[%4d s] %s, round %s, %s: %s\n' $((SECONDS - start)) "$1" "$2" "$3" "$(grep -o '"bodies": [0-9]*\|"[a-z_]*_per_[a-z]*": [0-9.]*\|"wall_s": [0-9.]*' <<<"$line" | tr -d '"' | paste -sd ' ')"
+    printf '[%4d s] %s, round %s, %s: %s\n' $((SECONDS - start)) "$1" "$2" "$3" "$(grep -o '"[ab]": "[a-z0-9]*"\|"[a-z_]*_ns": [0-9.]*\|"bodies": [0-9]*\|"[a-z_]*_per_[a-z]*": [0-9.]*\|"wall_s": [0-9.]*' <<<"$line" | tr -d '"' | paste -sd ' ')"
 }
 
 ours() # <case> <round> <variant> <program> [option...]
@@ -158,13 +158,13 @@ for ((round = 1; round <= rounds; ++round)); do
     for ((a = 0; a < 9; ++a)); do
         for ((b = a; b < 10; ++b)); do
             pairs=$query_pairs
-            case ${shapes[a]}-${shapes[b]} in *sdf*) pairs=$((query_pairs / 20)) ;; esac
+            case ${shapes[a]}-${shapes[b]} in *sdf*) pairs=$(((query_pairs + 99) / 100)) ;; esac
             ours contact-query "$round" particls "$contact_query" "${shapes[a]}" "${shapes[b]}" "$pairs" "$query_steps"
         done
     done
 done
 
-# Polyhedra that settle: our step and Yade's on the same grains, law and places, and ours with many more of them.
+# Polyhedra that settle: our step and Yade's on the same grains, law and places; ours by penetration depth, and with many more of them.
 yade_polyhedra() # <round> <state>
 {
     [ $yade = 1 ] || return 0
@@ -179,7 +179,8 @@ yade_polyhedra() # <round> <state>
 for ((round = 1; round <= rounds; ++round)); do
     ours settling "$round" particls "$polyhedra" --bodies $yade_grains --steps $((settling_steps * 10)) --state "$scratch/settled"
     yade_polyhedra "$round" "$scratch/settled"
-    ours settling "$round" particls-many "$polyhedra" --bodies $settling --steps $settling_steps
+    ours settling "$round" particls-point "$polyhedra" --bodies $yade_grains --steps $((settling_steps * 10)) --faces point
+    ours settling "$round" particls-many "$polyhedra" --bodies $settling --steps $settling_steps --faces point
 done
 
 version=$(sed -n 's/^#define PLS_VERSION_TEXT *"\(.*\)"/\1/p' "$root/include/particls/types.h")

@@ -162,7 +162,7 @@ def contact_queries(results):
 
 def settling(results):
     lines = load(results, "settling")
-    names = {"particls": "particls", "yade": "Yade, Polyhedra", "particls-many": "particls"}
+    names = {"particls": "particls", "yade": "Yade, Polyhedra", "particls-point": "particls, point law", "particls-many": "particls, point law"}
     base, rows = speeds(lines, "yade"), []
     for program in programs(lines):
         own = [line for line in lines if line["program"] == program]

@@ -31,6 +31,7 @@ static const double fall = 0.8;       ///< [s]
 typedef struct options
 {
     size_t bodies, steps;
+    bool point;        ///< the point law, of the same stiffness where the faces in touch measure `face_area`
     const char *state; ///< null: not written
 } options;
 
@@ -38,6 +39,7 @@ typedef struct options
 typedef struct heap
 {
     size_t wide, count;
+    bool point;
     pls_vec3 corner[CORNERS];
     pls_shape *shape;
     pls_world *world;
@@ -56,12 +58,16 @@ static bool read_options(int argc, char **argv, options *o)
             o->steps = value;
         else if (strcmp(argv[k], "--state") == 0 && k + 1 < argc)
             o->state = argv[k + 1];
+        else if (strcmp(argv[k], "--faces") == 0 && k + 1 < argc &&
+                 (strcmp(argv[k + 1], "point") == 0 || strcmp(argv[k + 1], "volume") == 0))
+            o->point = strcmp(argv[k + 1], "point") == 0;
         else
         {
             fprintf(stderr,
-                    "polyhedra: cannot use '%s%s%s'\nusage: polyhedra [--bodies N] [--steps N] [--state FILE]\n"
+                    "polyhedra: cannot use '%s%s%s'\nusage: polyhedra [--bodies N] [--steps N] [--faces volume|point] [--state FILE]\n"
                     "  --bodies N    grains (4000)\n"
                     "  --steps N     steps that are timed, after the fall (400)\n"
+                    "  --faces LAW   volume (as Yade's) or point (the penetration depth)\n"
                     "  --state FILE  write the corners of the grains as they lie before those steps\n",
                     argv[k], k + 1 < argc ? " " : "", k + 1 < argc ? argv[k + 1] : "");
             return false;
@@ -89,7 +95,7 @@ static pls_status make_grain(heap *h)
     return pls_shape_make(polyhedron, 3, &(pls_shape_input){.points = h->corner, .point_count = CORNERS}, "grain", &h->shape);
 }
 
-static pls_status set_law(pls_world *world, pls_material_id material)
+static pls_status set_law(pls_world *world, pls_material_id material, bool point)
 {
     const pls_law_ops *const *law = pls_builtin_laws();
     while (*law && strcmp((*law)->name, "viscoelastic") != 0) ++law;
@@ -109,6 +115,7 @@ static pls_status set_law(pls_world *world, pls_material_id material)
         values[place] = given[k].value;
     }
     PLS_TRY(pls_world_set_law(world, material, material, *law, values));
+    if (point) return PLS_OK;
     pls_narrow_options narrow = pls_default_narrow_options();
     narrow.faces = PLS_FACES_VOLUME;
     narrow.face_area = face_area;
@@ -154,7 +161,7 @@ static pls_status build(heap *h)
     material.values.density = density;
     pls_body_def grain = pls_default_body_def();
     PLS_TRY(pls_world_add_material(h->world, &material, &grain.material));
-    PLS_TRY(set_law(h->world, grain.material));
+    PLS_TRY(set_law(h->world, grain.material, h->point));
     PLS_TRY(pls_world_use_shape(h->world, "grain", h->shape, &grain.shape));
     PLS_TRY(pls_world_add_gravity(h->world, pls_vec(0.0, 0.0, -gravity)));
     PLS_TRY(pls_world_reserve_bodies(h->world, h->count + 5));
@@ -218,9 +225,11 @@ static pls_status measure(const options *o, heap *h)
     uint64_t hash;
     PLS_TRY(pls_world_get_figures(h->world, &f));
     PLS_TRY(pls_world_state_hash(h->world, &hash));
-    printf("{\"bodies\": %zu, \"corners\": %d, \"steps\": %zu, \"threads\": 1, \"cpu_s\": %.6f, \"particle_steps_per_s\": %.0f, "
+    printf("{\"bodies\": %zu, \"corners\": %d, \"faces\": \"%s\", \"steps\": %zu, \"threads\": 1, \"cpu_s\": %.6f, "
+           "\"particle_steps_per_s\": %.0f, "
            "\"touching\": %zu, \"listed\": %zu, \"kinetic_energy\": %.6g, \"state_hash\": \"%016" PRIx64 "\"}\n",
-           h->count, CORNERS, o->steps, spent, (double)(h->count * o->steps) / spent, f.touching, f.listed, f.energy_kinetic, hash);
+           h->count, CORNERS, h->point ? "point" : "volume", o->steps, spent, (double)(h->count * o->steps) / spent, f.touching, f.listed,
+           f.energy_kinetic, hash);
     return PLS_OK;
 }
 
@@ -228,7 +237,7 @@ int main(int argc, char **argv)
 {
     options o = {.bodies = 4000, .steps = 400};
     if (!read_options(argc, argv, &o)) return 2;
-    heap h = {.count = o.bodies, .wide = 1};
+    heap h = {.count = o.bodies, .wide = 1, .point = o.point};
     while ((h.wide + 1) * (h.wide + 1) * (h.wide + 1) <= o.bodies) ++h.wide;
     pls_status status = measure(&o, &h);
     if (status != PLS_OK) fprintf(stderr, "polyhedra: %s\n", pls_last_message());

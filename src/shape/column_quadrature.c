@@ -21,18 +21,16 @@ static const double sharpness = 1e-14; ///< of crossings, of the reach
 static const double inset = 1e-4;      ///< of a piece of a line: where its ends are looked at
 static const double gentle = 1e-3;     ///< change of slope that is not taken for an edge
 
-/// Gauss's rules on -1 .. 1: the finer for what is told, the coarser for how far it may err.
+/// Rules on -1 .. 1: Gauss's for what is told; for how far it may err Lobatto's, of lesser degree and with points on the sides of the cube, so that a bit of surface
+/// that comes in through a side, between the points of the first, is not overlooked.
 typedef struct rule
 {
-    int points;
     double node[5], weight[5];
 } rule;
-static const rule finer = {5,
-                           {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640},
+static const rule gauss = {{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640},
                            {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891}};
-static const rule coarser = {4,
-                             {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526},
-                             {0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538}};
+static const rule lobatto = {{-1.0, -0.6546536707079771, 0.0, 0.6546536707079771, 1.0},
+                             {0.1, 0.5444444444444444, 0.7111111111111111, 0.5444444444444444, 0.1}};
 
 /// A cube with its columns: along axis `up`, on lines along `in`, which follow each other along `out`.
 typedef struct block
@@ -332,7 +330,7 @@ static void add_row(const block *c, double out, double weight, double sum[PLS_MO
     for (int k = 0; k <= r.count; ++k)
     {
         double to = k < r.count ? r.at[k] : c->high[c->in], half = 0.5 * (to - from);
-        for (int q = 0; q < c->rule->points && half > 0.0; ++q)
+        for (int q = 0; q < 5 && half > 0.0; ++q)
             add_column(c, from + half * (1.0 + c->rule->node[q]), out, weight * half * c->rule->weight[q], sum);
         from = to;
     }
@@ -357,8 +355,7 @@ static void measure(const block *c, double sum[PLS_MOMENTS])
     for (int k = 0; k <= r.count; ++k)
     {
         double to = k < r.count ? r.at[k] : c->high[c->out], half = 0.5 * (to - from);
-        for (int q = 0; q < c->rule->points && half > 0.0; ++q)
-            add_row(c, from + half * (1.0 + c->rule->node[q]), half * c->rule->weight[q], sum);
+        for (int q = 0; q < 5 && half > 0.0; ++q) add_row(c, from + half * (1.0 + c->rule->node[q]), half * c->rule->weight[q], sum);
         from = to;
     }
 }
@@ -385,11 +382,11 @@ static void choose_axes(block *c, const double centre[3], double half)
 void pls_column_moments(const pls_column_frame *frame, const double centre[3], double half, double sum[PLS_MOMENTS],
                         double again[PLS_MOMENTS])
 {
-    block c = {.frame = frame, .rule = &finer};
+    block c = {.frame = frame, .rule = &gauss};
     choose_axes(&c, centre, half);
     for (int a = 0; a < 3; ++a) c.low[a] = centre[a] - half, c.high[a] = centre[a] + half;
     measure(&c, sum);
     int *first = frame->shape->dimension == 2 ? &c.up : &c.out, kept = *first;
-    *first = c.in, c.in = kept, c.rule = &coarser;
+    *first = c.in, c.in = kept, c.rule = &lobatto;
     measure(&c, again);
 }

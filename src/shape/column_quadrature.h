@@ -19,8 +19,8 @@ typedef struct pls_column_frame
 double pls_column_phi(const pls_column_frame *frame, const double x[3]);
 void pls_column_gradient(const pls_column_frame *frame, const double x[3], double g[3]);
 
-/// Moments of the shape within `half` of `centre` along all axes, in the frame; and once more, with lines along the other axis (2D: columns) and a
-/// coarser rule: how far the two differ tells how far the first may err.
+/// Moments of the shape within `half` of `centre` along all axes, in the frame; and once more, with lines along the other axis (2D: columns) and
+/// another rule: how far the two differ tells how far the first may err.
 void pls_column_moments(const pls_column_frame *frame, const double centre[3], double half, double sum[PLS_MOMENTS],
                         double again[PLS_MOMENTS]);
 

@@ -162,26 +162,51 @@ static void push(tree *t, const cell *c)
     rise(t->heap, t->count - 1);
 }
 
-/// Divide `c` `times` times and measure what is not settled; gives the sum of errors.
-static double plant(tree *t, const cell *c, int times)
+/// Divide a cell that is measured; gives the sum of the parts' errors. Where the parts say something else than the whole by more than all of them admit, some of the
+/// surface was overlooked, by the whole or by a part: half of that is added to their errors.
+static double divide(tree *t, const cell *whole)
 {
     cell part[8];
-    int parts = split(c, t->frame.shape->dimension, part);
-    double error = 0.0;
+    const int parts = split(whole, t->frame.shape->dimension, part);
+    double together[PLS_MOMENTS] = {0.0}, error = 0.0;
+    int open = 0;
+    for (int k = 0; k < parts; ++k)
+    {
+        const bool settled = is_settled(t, &part[k]);
+        if (!settled) measure(t, &part[k]);
+        add_to(together, part[k].sum);
+        if (settled)
+            add_to(t->settled, part[k].sum);
+        else
+            error += part[k].error, part[open++] = part[k];
+    }
+    const double origin[3] = {0.0, 0.0, 0.0}, *about = whole->face == NO_FACE ? whole->centre : origin;
+    const double overlooked_by = fmax(0.0, 0.5 * (difference(t, together, whole->sum, about) - whole->error - error));
+    for (int k = 0; k < open; ++k)
+    {
+        part[k].error += overlooked_by / open;
+        push(t, &part[k]);
+    }
+    return open > 0 ? error + overlooked_by : 0.0;
+}
+
+/// Divide `c` `times` times unmeasured, then measure and divide once more what is not settled.
+static void plant(tree *t, const cell *c, int times)
+{
+    cell part[8];
+    const int parts = split(c, t->frame.shape->dimension, part);
     for (int k = 0; k < parts; ++k)
     {
         if (is_settled(t, &part[k]))
             add_to(t->settled, part[k].sum);
         else if (times > 1)
-            error += plant(t, &part[k], times - 1);
+            plant(t, &part[k], times - 1);
         else
         {
             measure(t, &part[k]);
-            error += part[k].error;
-            push(t, &part[k]);
+            divide(t, &part[k]);
         }
     }
-    return error;
 }
 
 static double total(tree *t, double sum[PLS_MOMENTS])
@@ -200,12 +225,12 @@ static double total(tree *t, double sum[PLS_MOMENTS])
 }
 
 /// Divide the worst; by how much the error changes.
-static double divide(tree *t)
+static double divide_worst(tree *t)
 {
     const cell worst = t->heap[0];
     t->heap[0] = t->heap[--t->count];
     sink(t->heap, t->count, 0);
-    return plant(t, &worst, 1) - worst.error;
+    return divide(t, &worst) - worst.error;
 }
 
 // ---- all together ---------------------------------------------------------------------------------------------------------------------------------------------
@@ -225,13 +250,18 @@ static double refine(tree *t, double sum[PLS_MOMENTS])
     const cell all = {.half = t->frame.reach, .face = NO_FACE};
     t->size = t->frame.reach, t->volume = pow(t->frame.reach, t->frame.shape->dimension);
     if (is_star(t))
-        for (int face = 0; face < 6; ++face) plant(t, &(cell){.half = 1.0, .face = face}, 1);
+        for (int face = 0; face < 6; ++face)
+        {
+            cell side = {.half = 1.0, .face = face};
+            measure(t, &side);
+            divide(t, &side);
+        }
     else
         plant(t, &all, FIRST);
     double error = total(t, sum);
     for (size_t turn = 1; t->count > 0 && t->count + 8 < MOST_CELLS && error > target; ++turn)
     {
-        error += divide(t);
+        error += divide_worst(t);
         if (turn % 64 == 0 || error <= target) error = total(t, sum); // anew: differences leave round-off
     }
     return total(t, sum);

@@ -122,10 +122,11 @@ static void rounded_shapes_and_hulls(void **state)
     {
         const pls_shape_ops *ops;
         pls_shape_input input;
-    } shape[3] = {{&pls_box_shape, {.values = (double[]){1.0, 0.6, 0.4, 0.1}}},
+    } shape[4] = {{&pls_box_shape, {.values = (double[]){1.0, 0.6, 0.4, 0.1}}},
                   {&pls_cylinder_shape, {.values = (double[]){0.4, 1.0, 0.1}}},
-                  {&pls_polyhedron_shape, {.values = (double[]){0.0, 0.0}, .points = corner, .point_count = 24}}};
-    for (int k = 0; k < 3; ++k)
+                  {&pls_polyhedron_shape, {.values = (double[]){0.0, 0.0}, .points = corner, .point_count = 24}},
+                  {&pls_superquadric_shape, {.values = (double[]){0.9, 0.7, 0.5, 0.5, 0.7, 0.0}}}};
+    for (int k = 0; k < 4; ++k)
     {
         pls_shape *made = make(shape[k].ops, 3, &shape[k].input);
         if (made->mass.error != 0.0) fail_msg("shape %d has no closed form", k);
@@ -194,17 +195,29 @@ static double twin(const pls_shape *shape, pls_vec3 X)
 }
 
 /// Discs of radius^2 R^2 - u^2 at x = d + u, u from -d to R, and their mirror image.
-static void two_balls_that_overlap(void **state)
+static void expect_twins(double R, double d, double (*sdf)(const pls_shape *, pls_vec3))
 {
-    (void)state;
-    const double R = 0.7, d = 0.5;
     double moment[5]; // of u
     for (int n = 0; n < 5; ++n) moment[n] = (pow(R, n + 1) - pow(-d, n + 1)) / (n + 1);
     double V = 2.0 * M_PI * (R * R * moment[0] - moment[2]);
     double xx =
         2.0 * M_PI * (R * R * (d * d * moment[0] + 2.0 * d * moment[1] + moment[2]) - d * d * moment[2] - 2.0 * d * moment[3] - moment[4]);
     double yy = 0.5 * M_PI * (pow(R, 4) * moment[0] - 2.0 * R * R * moment[2] + moment[4]);
-    check_sdf(twin, &(pls_mass_properties){.volume = V, .inertia = {2.0 * yy, xx + yy, xx + yy}});
+    check_sdf(sdf, &(pls_mass_properties){.volume = V, .inertia = {2.0 * yy, xx + yy, xx + yy}});
+}
+
+/// Of these one ball comes into a cube of the first division by a corner that Gauss's points do not see.
+static double wide_twin(const pls_shape *shape, pls_vec3 X)
+{
+    (void)shape;
+    return fmin(pls_length(pls_sub(X, pls_vec(0.55, 0.0, 0.0))), pls_length(pls_add(X, pls_vec(0.55, 0.0, 0.0)))) - 1.0;
+}
+
+static void two_balls_that_overlap(void **state)
+{
+    (void)state;
+    expect_twins(0.7, 0.5, twin);
+    expect_twins(1.0, 0.55, wide_twin);
 }
 
 // ---- density ----------------------------------------------------------------------------------------------------------------------------------------------------
