@@ -1,5 +1,5 @@
 // summary.c -- summary.json: the result of a run for other programs. Numbers that do not exist (not a number, infinite, or not to be had after a failure)
-// are null. But for the wall times it depends on the scene alone; `contact_search` counts since the run was begun or resumed.
+// are null. But for the wall times it depends on the scene alone.
 
 #include "run/run_state.h"
 

@@ -62,6 +62,7 @@ for middle in 0.0312 0.0704 0.1101; do
     run "half-$middle" --threads 1 --set time.end=$middle
     "$PARTICLS" resume "half-$middle" --until 0.15 --threads 2 --quiet >resume.txt 2>&1 || { complain "resume at $middle failed"; cat resume.txt >&2; }
     same "half-$middle"
+    diff <(grep -v '_s"\|"threads"\|"scene_hash"' first/summary.json) <(grep -v '_s"\|"threads"\|"scene_hash"' "half-$middle/summary.json") >&2 || complain "the summary after a restart is another one"
 done
 for faces in manifold volume; do
     run "$faces-1" --threads 1 --set "contact[0].faces=$faces" --set contact[0].face_area=0.002
