@@ -222,6 +222,8 @@ static pls_status bound_groups(pls_pair_list *list, size_t rows)
     PLS_TRY(pls_reserve(&list->group_first, &capacity, groups, sizeof *list->group_first, "groups of rows"));
     capacity = list->group_capacity;
     PLS_TRY(pls_reserve(&list->group_last, &capacity, groups, sizeof *list->group_last, "groups of rows"));
+    capacity = list->group_capacity;
+    PLS_TRY(pls_reserve(&list->group_waits, &capacity, groups, sizeof *list->group_waits, "groups of rows"));
     list->group_capacity = capacity;
     for (size_t g = 0; g < groups; ++g) list->group_first[g] = UINT32_MAX, list->group_last[g] = 0;
     for (size_t b = list->wall_blocks; b < list->block_count; ++b)
@@ -433,7 +435,8 @@ size_t pls_pair_list_bytes(const pls_pair_list *list)
            list->touch_capacity + list->ended_capacity +
            (list->history_capacity + list->slot_capacity + list->skew_capacity) * sizeof(double) +
            (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity + 2 * list->group_capacity) *
-               sizeof *list->pairs.entry;
+               sizeof *list->pairs.entry +
+           list->group_capacity * sizeof *list->group_waits;
 }
 
 void pls_pair_list_free(pls_pair_list *list)
@@ -442,6 +445,7 @@ void pls_pair_list_free(pls_pair_list *list)
     pls_release(&list->block);
     pls_release(&list->group_first);
     pls_release(&list->group_last);
+    pls_release(&list->group_waits);
     pls_release(&list->row_i);
     pls_release(&list->row_j);
     pls_release(&list->shift);

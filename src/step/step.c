@@ -13,6 +13,7 @@
 #include "step/velocity_verlet.h"
 
 #include <omp.h>
+#include <sched.h>
 #include <string.h>
 
 enum {
@@ -21,6 +22,7 @@ enum {
     SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
     POSE_BLOCK = 64,     ///< solid bodies whose poses are computed at a time
     READY_GROUPS = 32,   ///< groups of rows that are finished at a time, if so many are ready
+    WAITING_GROUPS = 4,  ///< of groups that waited, so many go to one thread, the next to the next
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
@@ -95,8 +97,9 @@ typedef struct sweep
 {
     pls_world *world;
     pls_contact_input input;
-    double time; ///< of the forces [s]
-    bool go_on;  ///< each body begins its next step at once, while its rows are at hand
+    double time;    ///< of the forces [s]
+    bool go_on;     ///< each body begins its next step at once, while its rows are at hand
+    int past_walls; ///< threads that have done their contacts with walls; before all have, no body may be finished
     pls_drift_report total;
     pls_status worst;
     size_t failed_at; ///< first block of the thread that failed
@@ -106,9 +109,8 @@ typedef struct sweep
 /// The part of one thread: blocks of pairs, and the groups of rows that begin with them.
 typedef struct share
 {
-    int thread;
+    int thread, threads;
     size_t first_block, last_block, first_group, last_group;
-    size_t reached; ///< groups before this one were looked at while their forces were fresh
     pls_drift_report report;
     pls_narrow_counts counts;
     pls_status status;
@@ -126,6 +128,7 @@ static share share_of(const pls_world *world, int thread, int threads)
     size_t first = list->wall_blocks + pairs * (size_t)thread / (size_t)threads;
     size_t last = list->wall_blocks + pairs * ((size_t)thread + 1) / (size_t)threads;
     return (share){.thread = thread,
+                   .threads = threads,
                    .first_block = first,
                    .last_block = last,
                    .first_group = thread == 0 ? 0 : group_of_block(list, first, groups),
@@ -152,46 +155,68 @@ static void finish_groups(sweep *s, share *mine, size_t first, size_t last)
     }
 }
 
-/// Finish groups first .. last, which have no pairs in later blocks than are done, except those with pairs in blocks of other threads.
+/// Contacts with walls, by the thread that has the bodies' rows (and so their cache lines): where it has the first of the block.
+static void work_walls(sweep *s, share *mine)
+{
+    const pls_pair_list *list = &s->world->list;
+    for (size_t b = 0; b < list->wall_blocks; ++b)
+    {
+        size_t group = list->row_i[list->block[b].first] / PLS_ROW_GROUP;
+        if (mine->first_group <= group && group < mine->last_group) work_block(s, mine, b);
+    }
+    __atomic_add_fetch(&s->past_walls, 1, __ATOMIC_RELEASE);
+}
+
+static void wait_for_walls(const sweep *s, const share *mine)
+{
+    for (int turn = 0; __atomic_load_n(&s->past_walls, __ATOMIC_ACQUIRE) < mine->threads; ++turn)
+        if (turn > 1000) sched_yield(); // seldom: more threads than processors
+}
+
+/// Finish groups first .. last, which have no pairs in later blocks of this thread than are done, except those with pairs in blocks of other threads.
 static void finish_ready(sweep *s, share *mine, size_t first, size_t last)
 {
-    const uint32_t *begins = s->world->list.group_first;
+    const pls_pair_list *list = &s->world->list;
+    for (size_t g = first; g < last; ++g)
+    {
+        bool none = list->group_first[g] == UINT32_MAX;
+        list->group_waits[g] = !none && (list->group_first[g] < mine->first_block || list->group_last[g] >= mine->last_block);
+    }
     for (size_t g = first; g < last;)
     {
         size_t end = g;
-        while (end < last && begins[end] >= mine->first_block) ++end;
+        while (end < last && !list->group_waits[end]) ++end;
         finish_groups(s, mine, g, end);
-        for (g = end; g < last && begins[g] < mine->first_block; ++g) continue;
+        for (g = end; g < last && list->group_waits[g]; ++g) continue;
     }
-}
-
-/// Finish what had to wait for other threads.
-static void finish_waiting(sweep *s, share *mine)
-{
-    const uint32_t *begins = s->world->list.group_first;
-    for (size_t g = mine->first_group; g < mine->reached;)
-    {
-        size_t end = g;
-        while (end < mine->reached && begins[end] < mine->first_block) ++end;
-        finish_groups(s, mine, g, end);
-        for (g = end; g < mine->reached && begins[g] >= mine->first_block; ++g) continue;
-    }
-    finish_groups(s, mine, mine->reached, mine->last_group);
 }
 
 static void sweep_share(sweep *s, share *mine)
 {
     const pls_pair_list *list = &s->world->list;
-    mine->reached = mine->first_group;
+    size_t reached = mine->first_group; // groups before this one were looked at while their forces were fresh
     for (size_t b = mine->first_block; b < mine->last_block; ++b)
     {
         work_block(s, mine, b);
-        size_t ready = mine->reached;
+        size_t ready = reached;
         while (ready < mine->last_group && list->group_last[ready] <= b) ++ready;
-        if (ready - mine->reached < READY_GROUPS && b + 1 < mine->last_block) continue;
-        finish_ready(s, mine, mine->reached, ready);
-        mine->reached = ready;
+        if (ready - reached < READY_GROUPS) continue;
+        wait_for_walls(s, mine);
+        finish_ready(s, mine, reached, ready);
+        reached = ready;
     }
+    wait_for_walls(s, mine);
+    finish_ready(s, mine, reached, mine->last_group);
+}
+
+/// Finish what had to wait for other threads: shared out evenly, whoever's it was.
+static void finish_waiting(sweep *s, share *mine)
+{
+    const uint8_t *waits = s->world->list.group_waits;
+    const size_t groups = pls_block_count(s->world->bodies.count, PLS_ROW_GROUP);
+    for (size_t first = WAITING_GROUPS * (size_t)mine->thread; first < groups; first += WAITING_GROUPS * (size_t)mine->threads)
+        for (size_t g = first; g < first + WAITING_GROUPS && g < groups; ++g)
+            if (waits[g]) finish_groups(s, mine, g, g + 1);
 }
 
 /// Contacts of solids, all of them: they are few, and each costs far more than passing a body.
@@ -230,11 +255,10 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
     {
         share mine = share_of(world, omp_get_thread_num(), omp_get_num_threads());
         if (world->solids.count > 0) sweep_solids(&s, &mine);
-#pragma omp for schedule(static)
-        for (size_t b = 0; b < list->wall_blocks; ++b) work_block(&s, &mine, b);
+        work_walls(&s, &mine);
         sweep_share(&s, &mine);
 #pragma omp barrier
-        finish_waiting(&s, &mine);
+        if (mine.threads > 1) finish_waiting(&s, &mine);
 #pragma omp critical(pls_sweep)
         {
             add_report(&s.total, &mine.report);
