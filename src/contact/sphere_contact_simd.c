@@ -42,8 +42,9 @@ static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (
 static const pls_v4i none = {0, 0, 0, 0}, fourth = {0, 0, 0, INT64_MIN};
 
 /// X_j - X_i, r_i + r_j | u_j - u_i, lead_z of j less i, from two rows.
-static inline pls_row pair_row(const pls_body_place *i, const pls_body_place *j)
+static inline pls_row pair_row(const pls_body_place *i, const pls_body_place *j, int plain)
 {
+    if (plain) return pls_row_subtract(pls_row_load(&j->x), pls_row_load(&i->x)); // no radii needed
     return pls_row_subtract(pls_row_load(&j->x), pls_row_flip(pls_row_load(&i->x), fourth, none));
 }
 
@@ -109,11 +110,13 @@ static __attribute__((noinline)) void note_change(pls_pair_list *list, const pls
 static inline __attribute__((always_inline)) unsigned note_touching(pls_pair_list *list, const pls_pair_section *section, size_t c,
                                                                     unsigned now)
 {
-    unsigned before = list->touch[c >> 3], fresh = now & ~before;
+    unsigned before = list->touch[c >> 3];
+    if (now == before && list->ended[c >> 3] == 0)
+        return 0; // and write nothing: blocks of another thread may have their bytes in the same cache line
     list->touch[c >> 3] = (uint8_t)now;
     list->ended[c >> 3] = (uint8_t)(before & ~now);
-    if (now != before) note_change(list, section, c, now ^ before, fresh);
-    return fresh;
+    if (now != before) note_change(list, section, c, now ^ before, now & ~before);
+    return now & ~before;
 }
 
 /// Pick the touching lanes of candidates c .. c + 7.
@@ -180,12 +183,14 @@ static inline __attribute__((always_inline)) void fetch_slots(const pls_pair_lis
 static inline __attribute__((always_inline)) void fetch_bodies(const pls_pair_list *list, const pls_contact_input *in, size_t c)
 {
     const uint32_t *i = list->row_i + c, *j = list->row_j + c;
+    uint32_t upper[PLS_W]; // of all lanes at once
+#pragma GCC ivdep
+    for (int lane = 0; lane < PLS_W; ++lane) upper[lane] = i[lane] > j[lane] ? i[lane] : j[lane];
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane)
     {
-        uint32_t upper = i[lane] > j[lane] ? i[lane] : j[lane];
-        __builtin_prefetch(&in->place[upper]);
-        __builtin_prefetch(&in->spin[upper]);
+        __builtin_prefetch(&in->place[upper[lane]]);
+        __builtin_prefetch(&in->spin[upper[lane]]);
     }
     for (int lane = 0; in->vast && lane < PLS_W; lane += 4) // what the end of the step needs of the lower ones, into the second-level cache
     {
@@ -211,7 +216,7 @@ static inline __attribute__((always_inline)) void load_lanes(const pls_pair_list
     {
         size_t c = whole ? first + k + (size_t)lane : work->active[k + (size_t)lane];
         uint32_t i = list->row_i[c], j = list->row_j[c];
-        place[lane] = pair_row(&in->place[i], &in->place[j]);
+        place[lane] = pair_row(&in->place[i], &in->place[j], plain);
         if (periodic) place[lane] = pls_row_add(place[lane], pls_row_join(image_shift(list, c, edge), image_shift(list, c, edge_rate)));
         sum[lane] = sum_row(&in->spin[i], &in->spin[j]);
         if (skewed) skew[lane] = skew_row(in, i, j);
@@ -227,7 +232,7 @@ static inline __attribute__((always_inline)) void load_lanes(const pls_pair_list
         pls_vd_store(&work->spin[a][m], q[a]);
         pls_vd_store(&work->spin_end[a][m], q[4 + a]);
     }
-    pls_vd_store(&work->delta[m], d[3]);
+    if (!plain) pls_vd_store(&work->delta[m], d[3]);
     pls_vd_store(&work->slip_velocity[0][m], d[4] + q[3]);
     pls_vd_store(&work->slip_velocity[1][m], d[5] + q[7]);
     pls_vd_store(&work->slip_velocity[2][m], d[6] + d[7]);
@@ -245,10 +250,11 @@ static inline __attribute__((always_inline)) void load_lanes(const pls_pair_list
 }
 
 /// Distance, normal and overlap; returns which overlap.
-static inline __attribute__((always_inline)) unsigned measure_lanes(pls_contact_work *work, size_t m)
+static inline __attribute__((always_inline)) unsigned measure_lanes(pls_contact_work *work, size_t m, double both_radii, int plain)
 {
     const pls_vd d[3] = {pls_vd_load(&work->normal[0][m]), pls_vd_load(&work->normal[1][m]), pls_vd_load(&work->normal[2][m])};
-    pls_vd radii = pls_vd_load(&work->delta[m]), square = dot(d, d), distance = pls_vd_sqrt(square), inv = 1.0 / distance;
+    pls_vd radii = plain ? pls_vd_set(both_radii) : pls_vd_load(&work->delta[m]), square = dot(d, d), distance = pls_vd_sqrt(square),
+           inv = 1.0 / distance;
     for (int a = 0; a < 3; ++a) pls_vd_store(&work->normal[a][m], d[a] * inv);
     pls_vd_store(&work->delta[m], radii - distance);
     pls_vd_store(&work->distance[m], distance);
@@ -675,7 +681,7 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
     else
     {
         for (size_t k = 0; k < work->active_count; k += PLS_W) load_lanes(list, in, 0, k, k, work, 0, 0);
-        for (size_t k = 0; k < work->active_count; k += PLS_W) measure_lanes(work, k);
+        for (size_t k = 0; k < work->active_count; k += PLS_W) measure_lanes(work, k, 0.0, 0);
         for (size_t k = 0; k < work->active_count; k += PLS_W)
             carry_lanes(list, in, surface, &work->spring[0][k], PLS_CONTACT_BLOCK, fresh_lanes(work, k), k, work, 0);
         if (law->ops->needs_effective) load_effective(list, in, work);
@@ -704,20 +710,25 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
     };
     const double surface = surface_of(&in->laws->law[section->law]);
     const pls_linear_values law = pls_linear_take(in->laws->law[section->law].constants, in->dt);
-    const size_t first = block->first, count = (block->count + PLS_W - 1) / PLS_W * PLS_W, numbers = (size_t)section->numbers;
-    double *history = pls_pair_history(list, section, first);
+    const size_t first = block->first, count = (block->count + PLS_W - 1) / PLS_W * PLS_W,
+                 onwards = 8 * (size_t)section->numbers - (8 - PLS_W);
+    const double both_radii = 2.0 * in->place[list->row_i[first]].radius;
+    // Copies that no store of a byte can change, as far as compilers know.
+    const pls_pair_list pairs = *list;
+    const pls_contact_input input = *in;
+    double *old = pls_pair_history(&pairs, section, first), *kept = old, *slot = pairs.slot + first * PLS_SLOT;
     for (size_t turn = 0; turn < count + SETTLE; turn += PLS_W)
     {
         size_t k = turn;
         if (k < count)
         {
-            if (in->vast || !in->large) fetch_slots(list, section, first + k, 1);
-            load_lanes(list, in, first, k, k % RING, work, 1, plain);
+            if (input.vast || !input.large) fetch_slots(&pairs, section, first + k, 1);
+            load_lanes(&pairs, &input, first, k, k % RING, work, 1, plain);
         }
         k = turn - MEASURE;
         if (k < count)
         {
-            unsigned now = measure_lanes(work, k % RING) << (k & 7);
+            unsigned now = measure_lanes(work, k % RING, both_radii, plain) << (k & 7);
             if (k & 7) now |= work->now[k >> 3];
             if (k + PLS_W >= block->count) now &= valid_lanes(block, k / 8 * 8);
             work->now[k >> 3] = (uint8_t)now;
@@ -727,8 +738,9 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
         k = turn - CARRY;
         if (k < count)
         {
-            if (in->large) fetch_bodies(list, in, first + k + PLS_CONTACT_BLOCK);
-            carry_lanes(list, in, surface, history + k / 8 * 8 * numbers + k % 8, 8, fresh_lanes(work, k), k % RING, work, plain);
+            if (input.large) fetch_bodies(&pairs, &input, first + k + PLS_CONTACT_BLOCK);
+            carry_lanes(&pairs, &input, surface, old, 8, fresh_lanes(work, k), k % RING, work, plain);
+            old += (k + PLS_W) % 8 ? PLS_W : onwards;
         }
         k = turn - TRY;
         if (k < count) try_lanes(&law, work, k % RING);
@@ -737,11 +749,13 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
         k = turn - SETTLE;
         if (k < count)
         {
-            if (in->large) fetch_slots(list, section, first + k + PLS_CONTACT_BLOCK, 0);
-            settle_lanes(&law, pls_vm_of((unsigned)(work->now[k >> 3] >> (k & 7))), history + k / 8 * 8 * numbers + k % 8,
-                         list->slot + (first + k) * PLS_SLOT, k % RING, work);
-            if (!plain && !list->equal_radii)
-                for (size_t lane = 0; lane < PLS_W; ++lane) store_skew(list, in, first + k + lane, work->inv_distance[k % RING + lane]);
+            if (input.large) fetch_slots(&pairs, section, first + k + PLS_CONTACT_BLOCK, 0);
+            settle_lanes(&law, pls_vm_of((unsigned)(work->now[k >> 3] >> (k & 7))), kept, slot, k % RING, work);
+            kept += (k + PLS_W) % 8 ? PLS_W : onwards;
+            slot += PLS_W * PLS_SLOT;
+            if (!plain && !pairs.equal_radii)
+                for (size_t lane = 0; lane < PLS_W; ++lane)
+                    store_skew(&pairs, &input, first + k + lane, work->inv_distance[k % RING + lane]);
         }
     }
 }

@@ -22,7 +22,8 @@ enum {
     SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
     POSE_BLOCK = 64,     ///< solid bodies whose poses are computed at a time
     READY_GROUPS = 32,   ///< groups of rows that are finished at a time, if so many are ready
-    WAITING_GROUPS = 4,  ///< of groups that waited, so many go to one thread, the next to the next
+    WAITING_GROUPS = 16, ///< groups that a thread takes at a time to finish what had to wait
+    TAKEN_BLOCKS = 8,    ///< blocks of pairs that a thread takes at a time
     BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
@@ -97,9 +98,10 @@ typedef struct sweep
 {
     pls_world *world;
     pls_contact_input input;
-    double time;    ///< of the forces [s]
-    bool go_on;     ///< each body begins its next step at once, while its rows are at hand
-    int past_walls; ///< threads that have done their contacts with walls; before all have, no body may be finished
+    double time;      ///< of the forces [s]
+    bool go_on;       ///< each body begins its next step at once, while its rows are at hand
+    int past_walls;   ///< threads that have done their contacts with walls; before all have, no body may be finished
+    size_t looked_at; ///< groups of rows that somebody has taken to finish if they had to wait
     pls_drift_report total;
     pls_status worst;
     size_t failed_at; ///< first block of the thread that failed
@@ -125,8 +127,11 @@ static share share_of(const pls_world *world, int thread, int threads)
 {
     const pls_pair_list *list = &world->list;
     size_t groups = pls_block_count(world->bodies.count, PLS_ROW_GROUP), pairs = list->block_count - list->wall_blocks;
-    size_t first = list->wall_blocks + pairs * (size_t)thread / (size_t)threads;
-    size_t last = list->wall_blocks + pairs * ((size_t)thread + 1) / (size_t)threads;
+    // The last thread also gathers for the walls, whose rows are the last: a third of a pair's work per candidate.
+    size_t all = pairs + (list->count - list->wall_first) / (3 * PLS_CONTACT_BLOCK);
+    size_t first = all * (size_t)thread / (size_t)threads, last = all * ((size_t)thread + 1) / (size_t)threads;
+    first = list->wall_blocks + (first < pairs ? first : pairs);
+    last = list->wall_blocks + (last < pairs ? last : pairs);
     return (share){.thread = thread,
                    .threads = threads,
                    .first_block = first,
@@ -164,6 +169,7 @@ static void work_walls(sweep *s, share *mine)
         size_t group = list->row_i[list->block[b].first] / PLS_ROW_GROUP;
         if (mine->first_group <= group && group < mine->last_group) work_block(s, mine, b);
     }
+    s->world->left[mine->thread].range = (uint64_t)mine->first_block << 32 | mine->last_block; // before others look
     __atomic_add_fetch(&s->past_walls, 1, __ATOMIC_RELEASE);
 }
 
@@ -191,15 +197,33 @@ static void finish_ready(sweep *s, share *mine, size_t first, size_t last)
     }
 }
 
+/// Take the next blocks of a share, its owner from the front, other threads from the back.
+static bool take_blocks(pls_blocks_left *left, bool front, size_t *first, size_t *last)
+{
+    uint64_t old = __atomic_load_n(&left->range, __ATOMIC_RELAXED), new;
+    do {
+        uint64_t begin = old >> 32, end = old & UINT32_MAX, count = end - begin < TAKEN_BLOCKS ? end - begin : TAKEN_BLOCKS;
+        if (count == 0) return false;
+        *first = front ? begin : end - count;
+        *last = *first + count;
+        new = front ? *last << 32 | end : begin << 32 | *first;
+    } while (!__atomic_compare_exchange_n(&left->range, &old, new, false, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED));
+    return true;
+}
+
+/// The thread's own blocks, as far as nobody helps, and its bodies as soon as their last contact is known.
 static void sweep_share(sweep *s, share *mine)
 {
     const pls_pair_list *list = &s->world->list;
     size_t reached = mine->first_group; // groups before this one were looked at while their forces were fresh
-    for (size_t b = mine->first_block; b < mine->last_block; ++b)
+    size_t b, last;
+    mine->last_block = mine->first_block; // as far as it has come
+    while (take_blocks(&s->world->left[mine->thread], true, &b, &last))
     {
-        work_block(s, mine, b);
+        for (; b < last; ++b) work_block(s, mine, b);
+        mine->last_block = last;
         size_t ready = reached;
-        while (ready < mine->last_group && list->group_last[ready] <= b) ++ready;
+        while (ready < mine->last_group && list->group_last[ready] < last) ++ready;
         if (ready - reached < READY_GROUPS) continue;
         wait_for_walls(s, mine);
         finish_ready(s, mine, reached, ready);
@@ -209,14 +233,49 @@ static void sweep_share(sweep *s, share *mine)
     finish_ready(s, mine, reached, mine->last_group);
 }
 
-/// Finish what had to wait for other threads: shared out evenly, whoever's it was.
+/// Blocks that others have not come to: processors are seldom equally quick, as they may have other work.
+static void help_others(sweep *s, share *mine)
+{
+    size_t b, last;
+    for (int t = 1; t < mine->threads; ++t)
+        while (take_blocks(&s->world->left[(mine->thread + t) % mine->threads], false, &b, &last))
+            for (; b < last; ++b) work_block(s, mine, b);
+}
+
+/// Fetch into the cache what the rows of a group will gather, from the cache of another thread.
+static void fetch_group(const pls_world *world, size_t group)
+{
+    const pls_pair_list *list = &world->list;
+    for (size_t row = group * PLS_ROW_GROUP; row < (group + 1) * PLS_ROW_GROUP && row < world->bodies.count; ++row)
+    {
+        const uint32_t *head = pls_near_row(list, row);
+        __builtin_prefetch(&world->bodies.place[row]);
+        __builtin_prefetch(&world->bodies.spin[row]);
+        __builtin_prefetch(&world->bodies.load[row]);
+        if (head[0] == PLS_NEAR_STALE) continue;
+        for (uint32_t k = 0; k < head[0] + head[1]; ++k) __builtin_prefetch(list->slot + (size_t)head[PLS_NEAR_HEAD + k] * PLS_SLOT);
+    }
+}
+
+/// Finish what had to wait for other threads, whoever's it was.
 static void finish_waiting(sweep *s, share *mine)
 {
     const uint8_t *waits = s->world->list.group_waits;
     const size_t groups = pls_block_count(s->world->bodies.count, PLS_ROW_GROUP);
-    for (size_t first = WAITING_GROUPS * (size_t)mine->thread; first < groups; first += WAITING_GROUPS * (size_t)mine->threads)
-        for (size_t g = first; g < first + WAITING_GROUPS && g < groups; ++g)
-            if (waits[g]) finish_groups(s, mine, g, g + 1);
+    size_t first;
+    while ((first = __atomic_fetch_add(&s->looked_at, WAITING_GROUPS, __ATOMIC_RELAXED)) < groups)
+    {
+        const size_t last = first + WAITING_GROUPS < groups ? first + WAITING_GROUPS : groups;
+        for (size_t g = first; g < last; ++g)
+            if (waits[g]) fetch_group(s->world, g);
+        for (size_t g = first; g < last; ++g)
+        {
+            size_t end = g;
+            while (end < last && waits[end]) ++end;
+            finish_groups(s, mine, g, end);
+            g = end;
+        }
+    }
 }
 
 /// Contacts of solids, all of them: they are few, and each costs far more than passing a body.
@@ -257,6 +316,7 @@ static pls_status sweep_world(pls_world *world, double dt, double time, bool go_
         if (world->solids.count > 0) sweep_solids(&s, &mine);
         work_walls(&s, &mine);
         sweep_share(&s, &mine);
+        help_others(&s, &mine);
 #pragma omp barrier
         if (mine.threads > 1) finish_waiting(&s, &mine);
 #pragma omp critical(pls_sweep)
@@ -358,9 +418,11 @@ static pls_status reserve_work(pls_world *world)
     if (threads <= world->work_count) return PLS_OK;
     pls_parted_free(world);
     pls_release(&world->work);
+    pls_release(&world->left);
     world->work_count = 0;
     PLS_TRY(pls_allocate(&world->work, (size_t)threads, sizeof *world->work, "work space of threads"));
     PLS_TRY(pls_allocate(&world->parted, (size_t)threads, sizeof *world->parted, "work space of threads"));
+    PLS_TRY(pls_allocate(&world->left, (size_t)threads, sizeof *world->left, "work space of threads"));
     world->work_count = threads;
     return PLS_OK;
 }

@@ -81,6 +81,12 @@ typedef struct pls_parted_list
     size_t count, capacity;
 } pls_parted_list;
 
+/// Blocks of a thread's share of the contacts that nobody has taken yet: first << 32 | one behind the last. A cache line each.
+typedef struct pls_blocks_left
+{
+    _Alignas(64) uint64_t range;
+} pls_blocks_left;
+
 struct pls_world
 {
     pls_world_def def;
@@ -111,6 +117,7 @@ struct pls_world
     bool memory_holds;         ///< `memory` and `records`, not the lists, have the contacts (between a change of bodies and the next list)
     pls_contact_work *work;    ///< one per thread
     pls_parted_list *parted;   ///< contacts that ended in this step, one list per thread
+    pls_blocks_left *left;     ///< one per thread
     int work_count;
     pls_skin_tuner tuner;
     pls_special *special;
