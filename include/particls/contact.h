@@ -16,7 +16,7 @@ typedef enum pls_solver {
 /// What the law is asked with where faces are nearly parallel.
 typedef enum pls_faces {
     PLS_FACES_POINT,    ///< the depth, at the deepest point, which jumps as faces tilt
-    PLS_FACES_MANIFOLD, ///< a smooth maximum of the thickness at the corners of the common face
+    PLS_FACES_MANIFOLD, ///< a smooth maximum of the thickness of the overlap: the depth for parallel faces
     PLS_FACES_VOLUME    ///< the volume of the overlap over `face_area`, at its centre
 } pls_faces;
 

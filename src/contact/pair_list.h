@@ -95,7 +95,7 @@ typedef struct pls_pair_list
     size_t reference_capacity;
     double skin;           ///< it was made with [m]
     double drift;          ///< bound on how much two bodies can have come nearer since [m]
-    double image_drift;    ///< the part of it that a stretching box makes [m]
+    double image_drift;    ///< the part of it that a stretching box and turning walls make [m]
     double image_reach[3]; ///< how many edges lie between bodies of a listed pair, at most
     bool stale;
     uint64_t builds;

@@ -72,7 +72,11 @@ static double height_of_box(const pls_posed *p, const pls_posed *plane)
 
 static bool bounds_overlap(const pls_posed *a, const pls_posed *b)
 {
-    if (b->shape->ops->unbounded && b->shape->part_count == 0 && !isfinite(b->shape->radius)) return height_of_box(a, b) < 0.0;
+    if (!isfinite(b->shape->radius)) // a half-space; corners of the box may reach further than the sphere, by which pairs are listed
+    {
+        const pls_vec3 n = b->shape->dimension == 2 ? b->y : b->z;
+        return pls_dot(n, pls_sub(centre_of(a), b->position)) < a->size && height_of_box(a, b) < 0.0;
+    }
     const pls_vec3 x = centre_of(a), y = centre_of(b), d = pls_sub(y, x);
     const double reach = a->size + b->size;
     if (!(pls_dot(d, d) < reach * reach)) return false;

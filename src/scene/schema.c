@@ -208,7 +208,7 @@ static const pls_key keys[] = {
      "overlap of shapes that are not spheres: the penetration depth, or P1 eq. 14 by ADMM (not conservative where edges and corners "
      "overlap)"},
     {"contact", "faces", PLS_KEY_WORD, 0, 0, "point|manifold|volume", NULL, "", "point", ANY,
-     "where faces lie on each other: the force acts at the deepest point, at a smooth mean of the corners of the common face, or is the "
+     "where faces lie on each other: the force acts at the deepest point, follows a smooth maximum of the overlap's thickness, or is the "
      "volume of the overlap times k / face_area, at its centre"},
     {"contact", "face_area", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m^2", NULL, POSITIVE,
      "area over which the stiffness of the law acts with `faces: volume` (2D: length [m])"},

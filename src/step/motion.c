@@ -249,6 +249,7 @@ static pls_status drift_driven(pls_world *world, pls_special *s)
 pls_status pls_special_drift(pls_world *world)
 {
     double further = 0.0; // than the pass over all bodies moved this one, and noted: a given velocity may jump
+    double swept = 0.0;   // by the far points of walls of pieces that turn, whose pieces near a body are listed
     for (size_t k = 0; k < world->special_count; ++k)
     {
         pls_special *s = &world->special[k];
@@ -259,8 +260,14 @@ pls_status pls_special_drift(pls_world *world)
         else
             drift_anisotropic(world, s);
         further = fmax(further, pls_length(pls_sub(place_position(p), s->position)) - noted);
+        const uint32_t wall = PLS_BODY_UNBOUNDED | PLS_BODY_SOLID;
+        if ((world->bodies.kind[s->row].flags & wall) == wall)
+            swept = fmax(swept, pls_length(s->half_spin) * world->dt * world->shape_of[world->bodies.kind[s->row].shape]->radius *
+                                    world->bodies.scale[s->row]);
     }
     pls_neighbours_carried(world, further);
+    world->list.drift += swept;
+    world->list.image_drift += swept;
     return PLS_OK;
 }
 

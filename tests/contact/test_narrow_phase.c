@@ -172,7 +172,7 @@ static const pls_shape_ops torus_ops = {
 static void a_torus(void **state)
 {
     (void)state;
-    const double radius = 0.3, half[3] = {0.3, 0.2, 0.15};
+    const double radius = 0.3, half[4] = {0.3, 0.2, 0.15, 0.0}; // no rounding
     pls_shape *donut = make(&torus_ops, 3, NULL), *ball = make(&pls_sphere_shape, 3, &radius), *egg = make(&pls_ellipsoid_shape, 3, half);
     const pls_posed lying = pls_pose(donut, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0);
     for (int k = 0; k < 40; ++k)

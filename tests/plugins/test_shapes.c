@@ -45,8 +45,10 @@ static void a_ring_is_measured(void **state)
         expect_near(shape->moments.y, shape->moments.x, 1e-6);
         assert_true(pls_length(shape->mass.centre) < 1e-6 * R);
         expect_near(shape->radius, R + r, 1e-6);
-        assert_true(pls_length(pls_sub(shape->upper, pls_vec(R + r, R + r, r))) < 1e-6 * R);
-        assert_true(pls_length(pls_sub(shape->lower, pls_vec(-R - r, -R - r, -r))) < 1e-6 * R);
+        assert_true(pls_length(pls_sub(shape->upper, pls_vec(R + r, R + r, r))) < 2e-5 * R && shape->upper.x >= R + r &&
+                    shape->upper.z >= r);
+        assert_true(pls_length(pls_sub(shape->lower, pls_vec(-R - r, -R - r, -r))) < 2e-5 * R && shape->lower.x <= -R - r &&
+                    shape->lower.z <= -r);
         pls_scene_free(scene);
     }
     assert_int_equal(pls_memory_in_use(), 0);

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Not run by the test runner: it fails still, see CHANGELOG. Shapes of all kinds that rain on each other should give the same bits on any number of threads, with any skin and order in memory, and after a restart.
+# Runs in an empty folder with PARTICLS (the program).
+set -uo pipefail
+
+failures=0
+complain() {
+    echo "$*" >&2
+    failures=$((failures + 1))
+}
+
+cat >rain.yaml <<'YAML'
+particls: 1
+materials: {grain: {density: 2500}}
+shapes:
+  ball: {sphere: {radius: 0.05}}
+  brick: {box: {half: [0.05, 0.03, 0.025]}}
+  soap: {box: {half: [0.04, 0.03, 0.02], rounding: 0.01}}
+  pill: {capsule: {radius: 0.03, length: 0.06}}
+  can: {cylinder: {radius: 0.03, length: 0.08}}
+  egg: {ellipsoid: {half: [0.06, 0.04, 0.03]}}
+  tetra: {polyhedron: {points: [[0.05, 0.05, 0.05], [-0.05, -0.05, 0.05], [-0.05, 0.05, -0.05], [0.05, -0.05, -0.05]]}}
+  wall: {plane: {}}
+bodies:
+  - {name: rain, shape: [ball, brick, soap, pill, can, egg, tetra], material: grain, velocity: [0, 0, -4],
+     place: {random: {count: 30, box: {lower: [0, 0, 0.02], upper: [0.4, 0.4, 1.2]}}}, orientation: random}
+  - {name: floor, shape: wall, material: grain, position: [0, 0, 0], normal: [0, 0, 1]}
+  - {name: left, shape: wall, material: grain, position: [0, 0, 0], normal: [1, 0, 0]}
+  - {name: right, shape: wall, material: grain, position: [0.4, 0, 0], normal: [-1, 0, 0]}
+  - {name: front, shape: wall, material: grain, position: [0, 0, 0], normal: [0, 1, 0]}
+  - {name: back, shape: wall, material: grain, position: [0, 0.4, 0], normal: [0, -1, 0]}
+contact: [{between: all, law: viscoelastic, kn: 1.0e5, ks: 5.0e4, cn: 50, cs: 20, friction: 0.5}]
+forces: [{gravity: [0, 0, -9.81]}]
+time: {end: 0.15, dt: 1.0e-4}
+observe: [{checkpoint: {every: 0.05}}]
+YAML
+
+state_of() { grep -o '"state_hash": "[0-9a-f]*"' "$1/summary.json"; }
+
+run() { # <folder> <option...>
+    local folder=$1
+    shift
+    "$PARTICLS" run rain.yaml -o "$folder" --quiet "$@" >"$folder.txt" 2>&1 || { complain "run $folder failed"; cat "$folder.txt" >&2; }
+}
+
+run first --threads 1
+grep -q '"contacts": 0,' first/summary.json && complain "nothing touches: the test shows nothing"
+expected=$(state_of first)
+[ -n "$expected" ] || complain "there is no state hash"
+
+same() { [ "$(state_of "$1")" = "$expected" ] || complain "$1 ended in $(state_of "$1"), the first run in $expected"; }
+
+run threads --threads 3
+same threads
+run skin --threads 2 --set neighbours.skin=0.002
+same skin
+run wide --threads 1 --set neighbours.skin=0.08 --set neighbours.reorder=false
+same wide
+for middle in 0.0312 0.0704 0.1101; do
+    run "half-$middle" --threads 1 --set time.end=$middle
+    "$PARTICLS" resume "half-$middle" --until 0.15 --threads 2 --quiet >resume.txt 2>&1 || { complain "resume at $middle failed"; cat resume.txt >&2; }
+    same "half-$middle"
+done
+for faces in manifold volume; do
+    run "$faces-1" --threads 1 --set "contact[0].faces=$faces" --set contact[0].face_area=0.002
+    run "$faces-2" --threads 2 --set "contact[0].faces=$faces" --set contact[0].face_area=0.002 --set neighbours.skin=0.002
+    [ "$(state_of "$faces-1")" = "$(state_of "$faces-2")" ] || complain "faces: $faces depends on threads or skin"
+    [ "$(state_of "$faces-1")" != "$expected" ] || complain "faces: $faces changes nothing"
+done
+run admm-1 --threads 1 --set contact[0].solver=admm --set time.end=0.05
+run admm-2 --threads 2 --set contact[0].solver=admm --set time.end=0.05 --set neighbours.skin=0.002
+[ "$(state_of admm-1)" = "$(state_of admm-2)" ] || complain "solver: admm depends on threads or skin"
+
+[ $failures -eq 0 ] || exit 1
