@@ -208,12 +208,14 @@ static pls_status build_lists(pls_world *world)
     return status;
 }
 
+bool pls_neighbours_hold(const pls_world *world) { return !world->list.stale && world->list.drift < world->list.skin; }
+
 pls_status pls_neighbours_refresh(pls_world *world)
 {
     pls_pair_list *list = &world->list;
+    if (pls_neighbours_hold(world)) return PLS_OK;
     if (!list->stale)
     {
-        if (list->drift < list->skin) return PLS_OK;
         list->drift = true_drift(world);
         if (list->drift < 0.9 * list->skin) return PLS_OK;
     }

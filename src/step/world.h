@@ -151,6 +151,8 @@ pls_status pls_states_apply(pls_world *world);
 void pls_neighbours_moved(pls_world *world, double largest_square);
 /// Note by how much [m] a body, at most, went further in this step than was noted.
 void pls_neighbours_carried(pls_world *world, double further);
+/// Nobody has moved so far that the list would have to be looked at.
+bool pls_neighbours_hold(const pls_world *world);
 pls_status pls_neighbours_refresh(pls_world *world);
 /// Move what contacts remember out of the list, before bodies, laws or rows change.
 pls_status pls_neighbours_detach(pls_world *world);
