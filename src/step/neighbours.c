@@ -226,7 +226,9 @@ pls_status pls_neighbours_refresh(pls_world *world)
     PLS_TRY(build_lists(world));
     set_wall_depths(world);
     world->memory_holds = false;
-    pls_contact_memory_free(&world->memory); // as large as the lists themselves, and idle until the next
+    world->memory.count = 0;
+    if (world->bodies.count > PLS_VAST_WORLD)
+        pls_contact_memory_free(&world->memory); // as large as the lists themselves; new pages cost less there than space
     pls_solid_records_free(&world->records);
     if (world->special_stale) PLS_TRY(pls_find_specials(world));
     return PLS_OK;
