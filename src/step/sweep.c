@@ -17,12 +17,12 @@
 #include <string.h>
 
 enum {
-    SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
-    POSE_BLOCK = 64,     ///< solid bodies whose poses are computed at a time
-    READY_GROUPS = 32,   ///< groups of rows that are finished at a time, if so many are ready
-    WAITING_GROUPS = 16, ///< groups that a thread takes at a time to finish what had to wait
-    TAKEN_BLOCKS = 8,    ///< blocks of pairs that a thread takes at a time
-    BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
+    SERIAL_BLOCKS = 4,  ///< a loop of no more blocks is not worth waking other threads for
+    POSE_BLOCK = 64,    ///< solid bodies whose poses are computed at a time
+    READY_GROUPS = 32,  ///< groups of rows that are finished at a time, if so many are ready
+    WAITING_GROUPS = 4, ///< groups that a thread takes at a time to finish what had to wait
+    TAKEN_BLOCKS = 8,   ///< blocks of pairs that a thread takes at a time
+    BODY_BLOCK = 256    ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
 static void add_report(pls_drift_report *total, const pls_drift_report *part)
@@ -88,8 +88,7 @@ typedef struct sweep
     bool again;              ///< the next step is swept too
     pls_barrier walls_known; ///< before all threads have done their contacts with walls, no body may be finished
     pls_barrier contacts_known, step_done;
-    _Alignas(64) size_t looked_at; ///< groups of rows that somebody has taken to finish if they had to wait
-    pls_drift_report total;
+    _Alignas(64) pls_drift_report total;
     pls_status worst;
     size_t failed_at; ///< first block of the thread that failed
     char message[512];
@@ -101,6 +100,7 @@ typedef struct share
     int thread, threads;
     unsigned round; ///< sweeps of this team before
     size_t first_block, last_block, first_group, last_group;
+    size_t waiting; ///< groups put aside to be finished when all contacts are known
     pls_drift_report report;
     pls_narrow_counts counts;
     pls_status status;
@@ -158,39 +158,44 @@ static void work_walls(sweep *s, share *mine)
         size_t group = list->row_i[list->block[b].first] / PLS_ROW_GROUP;
         if (mine->first_group <= group && group < mine->last_group) work_block(s, mine, b);
     }
-    s->world->left[mine->thread].range = (uint64_t)mine->first_block << 32 | mine->last_block; // before others look
+    pls_share_left *left = &s->world->left[mine->thread]; // before others look
+    left->blocks = (uint64_t)mine->first_block << 32 | mine->last_block;
+    left->first_group = mine->first_group;
+    left->taken = 0;
     if (pls_barrier_arrive(&s->walls_known, mine->threads)) pls_barrier_open(&s->walls_known);
 }
 
-/// Finish groups first .. last, which have no pairs in later blocks of this thread than are done, except those with pairs in blocks of other threads.
+/// Whether a group of rows has pairs in blocks that this thread has not done.
+static bool must_wait(const pls_pair_list *list, const share *mine, size_t group)
+{
+    const uint32_t first = list->group_first[group], last = list->group_last[group];
+    return first != UINT32_MAX && (first < mine->first_block || last >= mine->last_block);
+}
+
+/// Finish groups first .. last, which have no pairs in later blocks of this thread than are done; put those aside that have some in blocks of others.
 static void finish_ready(sweep *s, share *mine, size_t first, size_t last)
 {
     const pls_pair_list *list = &s->world->list;
-    for (size_t g = first; g < last; ++g)
-    {
-        bool none = list->group_first[g] == UINT32_MAX;
-        list->group_waits[g] = !none && (list->group_first[g] < mine->first_block || list->group_last[g] >= mine->last_block);
-    }
     for (size_t g = first; g < last;)
     {
         size_t end = g;
-        while (end < last && !list->group_waits[end]) ++end;
+        while (end < last && !must_wait(list, mine, end)) ++end;
         finish_groups(s, mine, g, end);
-        for (g = end; g < last && list->group_waits[g]; ++g) continue;
+        for (g = end; g < last && must_wait(list, mine, g); ++g) list->group_waiting[mine->first_group + mine->waiting++] = (uint32_t)g;
     }
 }
 
 /// Take the next blocks of a share, its owner from the front, other threads from the back.
-static bool take_blocks(pls_blocks_left *left, bool front, size_t *first, size_t *last)
+static bool take_blocks(pls_share_left *left, bool front, size_t *first, size_t *last)
 {
-    uint64_t old = __atomic_load_n(&left->range, __ATOMIC_RELAXED), new;
+    uint64_t old = __atomic_load_n(&left->blocks, __ATOMIC_RELAXED), new;
     do {
         uint64_t begin = old >> 32, end = old & UINT32_MAX, count = end - begin < TAKEN_BLOCKS ? end - begin : TAKEN_BLOCKS;
         if (count == 0) return false;
         *first = front ? begin : end - count;
         *last = *first + count;
         new = front ? *last << 32 | end : begin << 32 | *first;
-    } while (!__atomic_compare_exchange_n(&left->range, &old, new, false, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED));
+    } while (!__atomic_compare_exchange_n(&left->blocks, &old, new, false, __ATOMIC_ACQ_REL, __ATOMIC_RELAXED));
     return true;
 }
 
@@ -214,6 +219,7 @@ static void sweep_share(sweep *s, share *mine)
     }
     pls_barrier_wait(&s->walls_known, mine->round);
     finish_ready(s, mine, reached, mine->last_group);
+    s->world->left[mine->thread].waiting = mine->waiting;
 }
 
 /// Blocks that others have not come to: processors are seldom equally quick, as they may have other work.
@@ -240,23 +246,32 @@ static void fetch_group(const pls_world *world, size_t group)
     }
 }
 
-/// Finish what had to wait for other threads, whoever's it was.
+/// Take groups of a share that wait, and have fetched what they gather. Returns how many.
+static size_t take_waiting(const pls_world *world, pls_share_left *left, const uint32_t **group)
+{
+    const size_t first = __atomic_fetch_add(&left->taken, WAITING_GROUPS, __ATOMIC_RELAXED);
+    if (first >= left->waiting) return 0;
+    const size_t count = left->waiting - first < WAITING_GROUPS ? left->waiting - first : WAITING_GROUPS;
+    *group = world->list.group_waiting + left->first_group + first;
+    for (size_t k = 0; k < count; ++k) fetch_group(world, (*group)[k]);
+    return count;
+}
+
+/// Finish what had to wait for other threads, the thread's own first; the next groups are fetched while these are worked on.
 static void finish_waiting(sweep *s, share *mine)
 {
-    const uint8_t *waits = s->world->list.group_waits;
-    const size_t groups = pls_block_count(s->world->bodies.count, PLS_ROW_GROUP);
-    size_t first;
-    while ((first = __atomic_fetch_add(&s->looked_at, WAITING_GROUPS, __ATOMIC_RELAXED)) < groups)
+    for (int t = 0; t < mine->threads; ++t)
     {
-        const size_t last = first + WAITING_GROUPS < groups ? first + WAITING_GROUPS : groups;
-        for (size_t g = first; g < last; ++g)
-            if (waits[g]) fetch_group(s->world, g);
-        for (size_t g = first; g < last; ++g)
+        pls_share_left *left = &s->world->left[(mine->thread + t) % mine->threads];
+        const uint32_t *group, *next;
+        for (size_t count = take_waiting(s->world, left, &group), coming; count > 0; count = coming, group = next)
         {
-            size_t end = g;
-            while (end < last && waits[end]) ++end;
-            finish_groups(s, mine, g, end);
-            g = end;
+            coming = take_waiting(s->world, left, &next);
+            for (size_t k = 0, end; k < count; k = end)
+            {
+                for (end = k + 1; end < count && group[end] == group[end - 1] + 1;) ++end;
+                finish_groups(s, mine, group[k], group[end - 1] + 1);
+            }
         }
     }
 }
@@ -328,7 +343,6 @@ static void close_sweep(sweep *s)
     s->time = (double)(world->step + 1) * world->dt;
     pls_domain_at(&world->domain, s->time);
     s->go_on = may_go_on(world, s->end);
-    s->looked_at = 0;
     s->total = (pls_drift_report){0.0, 0.0};
 }
 

@@ -81,11 +81,13 @@ typedef struct pls_parted_list
     size_t count, capacity;
 } pls_parted_list;
 
-/// Blocks of a thread's share of the contacts that nobody has taken yet: first << 32 | one behind the last. A cache line each.
-typedef struct pls_blocks_left
+/// What is left of a thread's share of a step. A cache line each.
+typedef struct pls_share_left
 {
-    _Alignas(64) uint64_t range;
-} pls_blocks_left;
+    _Alignas(64) uint64_t blocks; ///< of pairs that nobody has taken yet: first << 32 | one behind the last
+    size_t first_group;           ///< where its groups that wait are listed
+    size_t waiting, taken;        ///< such groups; those that somebody has taken to finish
+} pls_share_left;
 
 struct pls_world
 {
@@ -117,7 +119,7 @@ struct pls_world
     bool memory_holds;         ///< `memory` and `records`, not the lists, have the contacts (between a change of bodies and the next list)
     pls_contact_work *work;    ///< one per thread
     pls_parted_list *parted;   ///< contacts that ended in this step, one list per thread
-    pls_blocks_left *left;     ///< one per thread
+    pls_share_left *left;      ///< one per thread
     int work_count;
     pls_skin_tuner tuner;
     pls_special *special;
