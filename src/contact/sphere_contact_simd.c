@@ -694,68 +694,79 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
     store_history(list, section, work);
 }
 
-/// All candidates of the block, the linear law: as on a conveyor, each vector one place further in each turn. So neighbouring instructions belong to different
+/// All candidates of the block, the linear law: as on a conveyor, each eight one place further in each turn. So neighbouring instructions belong to different
 /// contacts and do not wait for each other, the units for shuffles, products and roots are busy at the same time, and what is passed on stays in a small ring.
 static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list, const pls_contact_input *in,
                                                              const pls_pair_section *section, const pls_pair_block *block,
                                                              pls_contact_work *work, int plain)
 {
-    enum {
-        MEASURE = PLS_W,
-        CARRY = MEASURE + (PLS_W < 8 ? 8 - PLS_W : PLS_W),
-        TRY = CARRY + PLS_W,
-        FACTOR = TRY + PLS_W,
-        SETTLE = FACTOR + PLS_W,
-        RING = 8 * PLS_W
-    };
+    enum { MEASURE = 8, CARRY = 16, TRY = 24, FACTOR = 32, SETTLE = 40, RING = 64 };
     const double surface = surface_of(&in->laws->law[section->law]);
     const pls_linear_values law = pls_linear_take(in->laws->law[section->law].constants, in->dt);
-    const size_t first = block->first, count = (block->count + PLS_W - 1) / PLS_W * PLS_W,
-                 onwards = 8 * (size_t)section->numbers - (8 - PLS_W);
+    const size_t first = block->first, count = (block->count + 7) / 8 * 8, onwards = 8 * (size_t)section->numbers;
     const double both_radii = 2.0 * in->place[list->row_i[first]].radius;
     // Copies that no store of a byte can change, as far as compilers know.
     const pls_pair_list pairs = *list;
     const pls_contact_input input = *in;
     double *old = pls_pair_history(&pairs, section, first), *kept = old, *slot = pairs.slot + first * PLS_SLOT;
-    for (size_t turn = 0; turn < count + SETTLE; turn += PLS_W)
+    for (size_t turn = 0; turn < count + SETTLE; turn += 8)
     {
-        size_t k = turn;
+        size_t k = turn, m = k % RING;
         if (k < count)
         {
-            if (input.vast || !input.large) fetch_slots(&pairs, section, first + k, 1);
-            load_lanes(&pairs, &input, first, k, k % RING, work, 1, plain);
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W)
+            {
+                if (input.vast || !input.large) fetch_slots(&pairs, section, first + k + v, 1);
+                load_lanes(&pairs, &input, first, k + v, m + v, work, 1, plain);
+            }
         }
-        k = turn - MEASURE;
+        k = turn - MEASURE, m = k % RING;
         if (k < count)
         {
-            unsigned now = measure_lanes(work, k % RING, both_radii, plain) << (k & 7);
-            if (k & 7) now |= work->now[k >> 3];
-            if (k + PLS_W >= block->count) now &= valid_lanes(block, k / 8 * 8);
+            unsigned now = 0;
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W) now |= measure_lanes(work, m + v, both_radii, plain) << v;
+            if (k + 8 > block->count) now &= valid_lanes(block, k);
             work->now[k >> 3] = (uint8_t)now;
-            if ((k & 7) + PLS_W == 8 || k + PLS_W == count)
-                work->fresh[k >> 3] = (uint8_t)note_touching(list, section, first + k / 8 * 8, now);
+            work->fresh[k >> 3] = (uint8_t)note_touching(list, section, first + k, now);
         }
-        k = turn - CARRY;
+        k = turn - CARRY, m = k % RING;
         if (k < count)
         {
-            if (input.large) fetch_bodies(&pairs, &input, first + k + PLS_CONTACT_BLOCK);
-            carry_lanes(&pairs, &input, surface, old, 8, fresh_lanes(work, k), k % RING, work, plain);
-            old += (k + PLS_W) % 8 ? PLS_W : onwards;
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W)
+            {
+                if (input.large) fetch_bodies(&pairs, &input, first + k + v + PLS_CONTACT_BLOCK);
+                carry_lanes(&pairs, &input, surface, old + v, 8, fresh_lanes(work, k + v), m + v, work, plain);
+            }
+            old += onwards;
         }
-        k = turn - TRY;
-        if (k < count) try_lanes(&law, work, k % RING);
-        k = turn - FACTOR;
-        if (k < count) factor_lanes(work, k % RING);
-        k = turn - SETTLE;
+        k = turn - TRY, m = k % RING;
         if (k < count)
         {
-            if (input.large) fetch_slots(&pairs, section, first + k + PLS_CONTACT_BLOCK, 0);
-            settle_lanes(&law, pls_vm_of((unsigned)(work->now[k >> 3] >> (k & 7))), kept, slot, k % RING, work);
-            kept += (k + PLS_W) % 8 ? PLS_W : onwards;
-            slot += PLS_W * PLS_SLOT;
-            if (!plain && !pairs.equal_radii)
-                for (size_t lane = 0; lane < PLS_W; ++lane)
-                    store_skew(&pairs, &input, first + k + lane, work->inv_distance[k % RING + lane]);
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W) try_lanes(&law, work, m + v);
+        }
+        k = turn - FACTOR, m = k % RING;
+        if (k < count)
+        {
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W) factor_lanes(work, m + v);
+        }
+        k = turn - SETTLE, m = k % RING;
+        if (k < count)
+        {
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W)
+            {
+                if (input.large) fetch_slots(&pairs, section, first + k + v + PLS_CONTACT_BLOCK, 0);
+                settle_lanes(&law, pls_vm_of((unsigned)work->now[k >> 3] >> v), kept + v, slot + v * PLS_SLOT, m + v, work);
+                for (size_t lane = v; !plain && !pairs.equal_radii && lane < v + PLS_W; ++lane)
+                    store_skew(&pairs, &input, first + k + lane, work->inv_distance[m + lane]);
+            }
+            kept += onwards;
+            slot += 8 * PLS_SLOT;
         }
     }
 }
