@@ -32,6 +32,9 @@ enum { OF_A, OF_B, OF_NONE }; // labels of faces
 
 enum { MOST_VERTICES = 2 * PLS_MOST_FACES };
 
+/// Of a body's size: of shallower overlaps rounding leaves no moments, and their force is nothing.
+static const double least_depth = 1e-11;
+
 /// A body as half-spaces about an origin nearby: the faces that may have to do with the overlap, those that `d` goes by first.
 typedef struct body
 {
@@ -311,7 +314,7 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
         B.reach = take_heights(b, origin, pls_scale(n, -1.0), height_b);
     A.reach = take_heights(a, origin, n, height_a);
     const double deep = A.reach + B.reach;
-    if (!(deep > 0.0)) return false;
+    if (!(deep > least_depth * a->size)) return false;
     take_faces(a, origin, n, height_a, -B.reach - deep, &A);
     if (!plane && !facet) take_faces(b, origin, pls_scale(n, -1.0), height_b, -A.reach - deep, &B);
 

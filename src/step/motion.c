@@ -50,10 +50,15 @@ pls_status pls_find_specials(pls_world *world)
         if (row == PLS_NO_ROW || !(bodies->kind[row].flags & (PLS_BODY_SPECIAL | PLS_BODY_ANISOTROPIC))) continue;
         PLS_TRY(pls_reserve(&world->special, &world->special_capacity, world->special_count + 1, sizeof *world->special,
                             "bodies advanced one by one"));
-        world->special[world->special_count++] = (pls_special){.row = row};
+        world->special[world->special_count++] = (pls_special){.row = row, .number = number};
     }
     world->special_stale = false;
     return PLS_OK;
+}
+
+void pls_follow_specials(pls_world *world)
+{
+    for (size_t k = 0; k < world->special_count; ++k) world->special[k].row = world->bodies.row_of[world->special[k].number];
 }
 
 static const pls_motion_def *motion_of(const pls_world *world, uint32_t row)

@@ -118,7 +118,7 @@ static pls_status order_bodies(pls_world *world)
     {
         status = pls_radix_sort_u64(key, old_row, bodies->count);
         if (status == PLS_OK) status = pls_bodies_reorder(bodies, old_row);
-        world->special_stale = true;
+        if (status == PLS_OK) pls_follow_specials(world);
     }
     pls_release(&key);
     pls_release(&old_row);
@@ -230,6 +230,5 @@ pls_status pls_neighbours_refresh(pls_world *world)
     if (world->bodies.count > PLS_VAST_WORLD)
         pls_contact_memory_free(&world->memory); // as large as the lists themselves; new pages cost less there than space
     pls_solid_records_free(&world->records);
-    if (world->special_stale) PLS_TRY(pls_find_specials(world));
     return PLS_OK;
 }

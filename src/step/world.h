@@ -48,7 +48,7 @@ typedef struct pls_binding
 /// A body advanced one by one: partly driven, driven by a function, or with three different moments.
 typedef struct pls_special
 {
-    uint32_t row;
+    uint32_t row, number;
     pls_vec3 position, velocity, spin; ///< at the start of the step
     pls_quat orientation;
     pls_body_before before;
@@ -142,6 +142,8 @@ pls_status pls_special_before(pls_world *world);
 pls_status pls_special_drift(pls_world *world);
 void pls_special_finish(pls_world *world);
 pls_status pls_find_specials(pls_world *world);
+/// Bodies have other rows now: what the step under way keeps of special ones stays.
+void pls_follow_specials(pls_world *world);
 
 // state_rk2.c
 void pls_states_before(pls_world *world);
