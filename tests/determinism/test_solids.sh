@@ -46,6 +46,7 @@ run() { # <folder> <option...>
 
 run first --threads 1
 grep -q '"contacts": 0,' first/summary.json && complain "nothing touches: the test shows nothing"
+grep -q '"contact_search": {"queries": [1-9][0-9]*, "iterations": [1-9][0-9]*, "restarts": [0-9]*, "fallbacks": [0-9]*, "failures": 0}' first/summary.json || complain "contacts were not searched for as they should be: $(grep contact_search first/summary.json)"
 expected=$(state_of first)
 [ -n "$expected" ] || complain "there is no state hash"
 
