@@ -122,6 +122,7 @@ void pls_world_destroy(pls_world *world)
     pls_release(&world->state_rate);
     pls_release(&world->binding);
     pls_parted_free(world);
+    pls_release(&world->left);
     pls_release(&world->work);
     pls_release(&world->special);
     pls_release(&world);
