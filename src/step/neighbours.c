@@ -226,9 +226,7 @@ pls_status pls_neighbours_refresh(pls_world *world)
     PLS_TRY(build_lists(world));
     set_wall_depths(world);
     world->memory_holds = false;
-    world->memory.count = 0;
-    if (world->bodies.count > PLS_VAST_WORLD)
-        pls_contact_memory_free(&world->memory); // as large as the lists themselves; new pages cost less there than space
+    pls_contact_memory_free(&world->memory); // as large as the lists themselves, and idle until the next
     pls_solid_records_free(&world->records);
     return PLS_OK;
 }
