@@ -496,7 +496,7 @@ void narrow_random(int dimension, int ka, int kb, int pairs, int searched, uint6
         pls_pair_state state = {{0}};
         pls_touch t;
         query(&a, &b, &state, &t, &tally->counts);
-        compare(&a, &b, &t, narrow_allowed(dimension, ka, kb), k % searched == 0, &random, tally);
+        compare(&a, &b, &t, narrow_allowed(dimension, ka, kb), k / 2 % searched == 0, &random, tally);
     }
 }
 
