@@ -5,7 +5,7 @@ set -euo pipefail
 results=${1:?usage: plot.sh <run directory>}
 
 last=$(tail -n 1 "$results/series/discharged.csv" | cut -d , -f 1)
-times=$(awk -v last="$last" 'BEGIN { printf "0.7 %g %g %g", 0.7 + (last - 0.7) / 7, 0.7 + (last - 0.7) * 2 / 7, last }')
+times="0.7 0.8 1 $last"
 number=0
 for time in $times; do
     "${PARTICLS:-particls}" render "$results" -o "$results/view_$number.png" --time "$time" --colour shape --hide gate --section 0,-1,0,0 --no-bar \
@@ -43,10 +43,12 @@ set fit quiet
 set fit logfile '/dev/null'
 begin = $last > 1 ? 0.9 : 0
 fit [begin:*] flow(x) series using 1:3 via slope, start
-beverloo(t) = 0.58 * 0.55 * 2500 * sqrt(9.81) * (0.07 - 1.4 * 0.01)**2.5 * (t - 0.73)
+# Beverloo: C rho sqrt(g) (D - k d)^(5/2), rho the bulk density in the full hopper
+beverloo(k) = 0.58 * 1500 * sqrt(9.81) * (0.07 - k * 0.01)**2.5
 print sprintf('flow from t = %g s on: %.2f kg/s', begin, slope)
 plot [0.6:*][0:1.4] series every ::1 using 1:3 with lines lw 2.4 lc rgb '#1f77b4' title 'simulation', \\
      [0.6:*] flow(x) with lines lw 1.2 dt 2 lc rgb '#303030' title sprintf('line from %g s on: %.2f kg/s', begin, slope), \\
-     [0.73:*] beverloo(x) with lines lw 1.2 lc rgb '#d62728' title 'Beverloo, C = 0.58, k = 1.4: 1.85 kg/s'
+     [0.73:*] beverloo(1.4) * (x - 0.73) with lines lw 1.2 lc rgb '#d62728' title sprintf('Beverloo, k = 1.4 (round): %.2f kg/s', beverloo(1.4)), \\
+     [0.73:*] beverloo(2.9) * (x - 0.73) with lines lw 1.2 lc rgb '#2ca02c' title sprintf('Beverloo, k = 2.9 (sand): %.2f kg/s', beverloo(2.9))
 GNUPLOT
 rm -f "$results"/view_?.png
