@@ -10,7 +10,7 @@ for heap in balls stones; do
     echo "$heap: $(head -n 1 "$results/$heap.txt")"
 done
 
-"${PARTICLS:-particls}" render "$results" -o "$results/heaps.png" --colour group --hide tube_of_balls --hide tube_of_stones --hide ground \
+"${PARTICLS:-particls}" render "$results" -o "$results/heaps.png" --colour group --hide tube_of_balls --hide tube_of_stones \
     --camera 0,-0.75,0.22:0,0,0.01 --size 1000x360 --no-bar --quiet
 
 gnuplot <<GNUPLOT
