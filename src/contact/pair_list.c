@@ -221,6 +221,8 @@ static pls_status bound_groups(pls_pair_list *list, size_t rows)
     PLS_TRY(pls_reserve(&list->group_first, &capacity, groups, sizeof *list->group_first, "groups of rows"));
     capacity = list->group_capacity;
     PLS_TRY(pls_reserve(&list->group_last, &capacity, groups, sizeof *list->group_last, "groups of rows"));
+    capacity = list->group_capacity;
+    PLS_TRY(pls_reserve(&list->group_waiting, &capacity, groups, sizeof *list->group_waiting, "groups of rows"));
     list->group_capacity = capacity;
     for (size_t g = 0; g < groups; ++g) list->group_first[g] = UINT32_MAX, list->group_last[g] = 0;
     for (size_t b = list->wall_blocks; b < list->block_count; ++b)
@@ -431,7 +433,7 @@ size_t pls_pair_list_bytes(const pls_pair_list *list)
     return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift +
            list->touch_capacity + list->ended_capacity +
            (list->history_capacity + list->slot_capacity + list->skew_capacity) * sizeof(double) +
-           (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity + 2 * list->group_capacity) *
+           (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity + 3 * list->group_capacity) *
                sizeof *list->pairs.entry;
 }
 
@@ -441,6 +443,7 @@ void pls_pair_list_free(pls_pair_list *list)
     pls_release(&list->block);
     pls_release(&list->group_first);
     pls_release(&list->group_last);
+    pls_release(&list->group_waiting);
     pls_release(&list->row_i);
     pls_release(&list->row_j);
     pls_release(&list->shift);

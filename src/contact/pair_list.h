@@ -65,6 +65,7 @@ typedef struct pls_pair_list
     pls_pair_block *block; ///< those of walls, then those of pairs in order of their first rows
     size_t block_count, block_capacity, wall_blocks;
     uint32_t *group_first, *group_last; ///< first and last block with pairs of the PLS_ROW_GROUP rows of a group; none: UINT32_MAX and 0
+    uint32_t *group_waiting; ///< of the step: groups that must wait for contacts of another thread; each thread's from its first group on
     size_t group_capacity;
 
     size_t count;      ///< candidates, fill included

@@ -18,6 +18,9 @@ typedef struct pls_contact_work
     _Alignas(64) double shear_force[3][PLS_CONTACT_BLOCK];   ///< [N]
     _Alignas(64) double damping_power[PLS_CONTACT_BLOCK];    ///< [W]
     _Alignas(64) double slip_work[PLS_CONTACT_BLOCK];        ///< [J]
+    // of whole vectors
+    _Alignas(64) double factor[PLS_CONTACT_BLOCK]; ///< of the trial shear force; first its square [N^2]
+    _Alignas(64) double cone[PLS_CONTACT_BLOCK];   ///< largest shear force [N]
     // of sphere pairs
     _Alignas(64) double distance[PLS_CONTACT_BLOCK];     ///< of the centres [m]
     _Alignas(64) double inv_distance[PLS_CONTACT_BLOCK]; ///< [1/m]
@@ -36,6 +39,7 @@ typedef struct pls_contact_work
     _Alignas(64) double history[PLS_LAW_MAX_HISTORY][PLS_CONTACT_BLOCK];
     uint32_t active[PLS_CONTACT_BLOCK + 16]; ///< candidates that were picked because they touch
     size_t active_count;
+    uint8_t now[PLS_CONTACT_BLOCK / 8];   ///< bit k % 8 of byte k / 8: candidate k of a block of whole vectors touches
     uint8_t fresh[PLS_CONTACT_BLOCK / 8]; ///< bit k % 8 of byte k / 8: contact k of the arrays began in this step
 } pls_contact_work;
 

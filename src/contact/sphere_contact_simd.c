@@ -42,8 +42,9 @@ static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (
 static const pls_v4i none = {0, 0, 0, 0}, fourth = {0, 0, 0, INT64_MIN};
 
 /// X_j - X_i, r_i + r_j | u_j - u_i, lead_z of j less i, from two rows.
-static inline pls_row pair_row(const pls_body_place *i, const pls_body_place *j)
+static inline pls_row pair_row(const pls_body_place *i, const pls_body_place *j, int plain)
 {
+    if (plain) return pls_row_subtract(pls_row_load(&j->x), pls_row_load(&i->x)); // no radii needed
     return pls_row_subtract(pls_row_load(&j->x), pls_row_flip(pls_row_load(&i->x), fourth, none));
 }
 
@@ -109,11 +110,13 @@ static __attribute__((noinline)) void note_change(pls_pair_list *list, const pls
 static inline __attribute__((always_inline)) unsigned note_touching(pls_pair_list *list, const pls_pair_section *section, size_t c,
                                                                     unsigned now)
 {
-    unsigned before = list->touch[c >> 3], fresh = now & ~before;
+    unsigned before = list->touch[c >> 3];
+    if (now == before && list->ended[c >> 3] == 0)
+        return 0; // and write nothing: blocks of another thread may have their bytes in the same cache line
     list->touch[c >> 3] = (uint8_t)now;
     list->ended[c >> 3] = (uint8_t)(before & ~now);
-    if (now != before) note_change(list, section, c, now ^ before, fresh);
-    return fresh;
+    if (now != before) note_change(list, section, c, now ^ before, now & ~before);
+    return now & ~before;
 }
 
 /// Pick the touching lanes of candidates c .. c + 7.
@@ -180,12 +183,14 @@ static inline __attribute__((always_inline)) void fetch_slots(const pls_pair_lis
 static inline __attribute__((always_inline)) void fetch_bodies(const pls_pair_list *list, const pls_contact_input *in, size_t c)
 {
     const uint32_t *i = list->row_i + c, *j = list->row_j + c;
+    uint32_t upper[PLS_W]; // of all lanes at once
+#pragma GCC ivdep
+    for (int lane = 0; lane < PLS_W; ++lane) upper[lane] = i[lane] > j[lane] ? i[lane] : j[lane];
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane)
     {
-        uint32_t upper = i[lane] > j[lane] ? i[lane] : j[lane];
-        __builtin_prefetch(&in->place[upper]);
-        __builtin_prefetch(&in->spin[upper]);
+        __builtin_prefetch(&in->place[upper[lane]]);
+        __builtin_prefetch(&in->spin[upper[lane]]);
     }
     for (int lane = 0; in->vast && lane < PLS_W; lane += 4) // what the end of the step needs of the lower ones, into the second-level cache
     {
@@ -196,109 +201,71 @@ static inline __attribute__((always_inline)) void fetch_bodies(const pls_pair_li
     }
 }
 
-/// Rows of both bodies to columns over contacts: of the candidates of the block (`whole`), or of the picked ones.
+/// Rows of both bodies to columns over contacts: of candidates k .. of the block (`whole`), or of the picked contacts k .. ; to place m of the arrays.
 /// `plain`: no periodic box, equal radii that stay.
-static inline __attribute__((always_inline)) void load_pairs(const pls_pair_list *list, const pls_contact_input *in,
-                                                             const pls_pair_section *section, const pls_pair_block *block,
-                                                             pls_contact_work *work, int whole, int plain)
+static inline __attribute__((always_inline)) void load_lanes(const pls_pair_list *list, const pls_contact_input *in, size_t first, size_t k,
+                                                             size_t m, pls_contact_work *work, int whole, int plain)
 {
     const int periodic = !plain && in->domain->any_periodic, growing = !plain && in->growing, skewed = !plain && !list->equal_radii;
     const pls_v4 edge = {in->domain->edge[0], in->domain->edge[1], in->domain->edge[2], 0.0};
     const pls_v4 edge_rate = {in->domain->edge_rate[0], in->domain->edge_rate[1], in->domain->edge_rate[2], 0.0};
-    const size_t count = whole ? block->count : work->active_count;
-    for (size_t k = 0; k < count; k += PLS_W)
-    {
-        pls_row place[PLS_W], sum[PLS_W], skew[PLS_W];
-        pls_vd growth = pls_vd_set(0.0);
-        if (whole && (in->vast || !in->large)) fetch_slots(list, section, block->first + k, 1);
+    pls_row place[PLS_W], sum[PLS_W], skew[PLS_W];
+    pls_vd growth = pls_vd_set(0.0);
 #pragma GCC unroll 8
-        for (int lane = 0; lane < PLS_W; ++lane)
-        {
-            size_t c = whole ? block->first + k + (size_t)lane : work->active[k + (size_t)lane];
-            uint32_t i = list->row_i[c], j = list->row_j[c];
-            place[lane] = pair_row(&in->place[i], &in->place[j]);
-            if (periodic) place[lane] = pls_row_add(place[lane], pls_row_join(image_shift(list, c, edge), image_shift(list, c, edge_rate)));
-            sum[lane] = sum_row(&in->spin[i], &in->spin[j]);
-            if (skewed) skew[lane] = skew_row(in, i, j);
-            if (growing) growth[lane] = (double)in->before[i].growth + (double)in->before[j].growth;
-        }
-        pls_vd d[8], q[8];
-        pls_columns8(place, d);
-        pls_columns8(sum, q);
+    for (int lane = 0; lane < PLS_W; ++lane)
+    {
+        size_t c = whole ? first + k + (size_t)lane : work->active[k + (size_t)lane];
+        uint32_t i = list->row_i[c], j = list->row_j[c];
+        place[lane] = pair_row(&in->place[i], &in->place[j], plain);
+        if (periodic) place[lane] = pls_row_add(place[lane], pls_row_join(image_shift(list, c, edge), image_shift(list, c, edge_rate)));
+        sum[lane] = sum_row(&in->spin[i], &in->spin[j]);
+        if (skewed) skew[lane] = skew_row(in, i, j);
+        if (growing) growth[lane] = (double)in->before[i].growth + (double)in->before[j].growth;
+    }
+    pls_vd d[8], q[8];
+    pls_columns8(place, d);
+    pls_columns8(sum, q);
+    for (int a = 0; a < 3; ++a)
+    {
+        pls_vd_store(&work->normal[a][m], d[a]);
+        pls_vd_store(&work->velocity[a][m], d[4 + a]);
+        pls_vd_store(&work->spin[a][m], q[a]);
+        pls_vd_store(&work->spin_end[a][m], q[4 + a]);
+    }
+    if (!plain) pls_vd_store(&work->delta[m], d[3]);
+    pls_vd_store(&work->slip_velocity[0][m], d[4] + q[3]);
+    pls_vd_store(&work->slip_velocity[1][m], d[5] + q[7]);
+    pls_vd_store(&work->slip_velocity[2][m], d[6] + d[7]);
+    if (growing) pls_vd_store(&work->growth[m], growth);
+    if (skewed)
+    {
+        pls_vd w[8];
+        pls_columns8(skew, w);
         for (int a = 0; a < 3; ++a)
         {
-            pls_vd_store(&work->normal[a][k], d[a]);
-            pls_vd_store(&work->velocity[a][k], d[4 + a]);
-            pls_vd_store(&work->spin[a][k], q[a]);
-            pls_vd_store(&work->spin_end[a][k], q[4 + a]);
-        }
-        pls_vd_store(&work->delta[k], d[3]);
-        pls_vd_store(&work->slip_velocity[0][k], d[4] + q[3]);
-        pls_vd_store(&work->slip_velocity[1][k], d[5] + q[7]);
-        pls_vd_store(&work->slip_velocity[2][k], d[6] + d[7]);
-        if (growing) pls_vd_store(&work->growth[k], growth);
-        if (skewed)
-        {
-            pls_vd w[8];
-            pls_columns8(skew, w);
-            for (int a = 0; a < 3; ++a)
-            {
-                pls_vd_store(&work->skew[a][k], w[a]);
-                pls_vd_store(&work->skew_end[a][k], w[4 + a]);
-            }
+            pls_vd_store(&work->skew[a][m], w[a]);
+            pls_vd_store(&work->skew_end[a][m], w[4 + a]);
         }
     }
 }
 
-/// Distance, normal and overlap; `whole`: note which candidates touch.
-static inline __attribute__((always_inline)) void measure_pairs(pls_pair_list *list, const pls_pair_section *section,
-                                                                const pls_pair_block *block, pls_contact_work *work, int whole)
+/// Distance, normal and overlap; returns which overlap.
+static inline __attribute__((always_inline)) unsigned measure_lanes(pls_contact_work *work, size_t m, double both_radii, int plain)
 {
-    const size_t count = whole ? block->count : work->active_count;
-    for (size_t k = 0; k < count; k += 8)
-    {
-        unsigned now = 0;
-        for (size_t half = 0; half < 8; half += PLS_W)
-        {
-            const size_t m = k + half;
-            const pls_vd d[3] = {pls_vd_load(&work->normal[0][m]), pls_vd_load(&work->normal[1][m]), pls_vd_load(&work->normal[2][m])};
-            pls_vd radii = pls_vd_load(&work->delta[m]), square = dot(d, d), distance = pls_vd_sqrt(square), inv = 1.0 / distance;
-            for (int a = 0; a < 3; ++a) pls_vd_store(&work->normal[a][m], d[a] * inv);
-            pls_vd_store(&work->delta[m], radii - distance);
-            pls_vd_store(&work->distance[m], distance);
-            pls_vd_store(&work->inv_distance[m], inv);
-            now |= pls_vd_less(square, radii * radii) << half;
-        }
-        if (whole) work->fresh[k >> 3] = (uint8_t)note_touching(list, section, block->first + k, now & valid_lanes(block, k));
-    }
+    const pls_vd d[3] = {pls_vd_load(&work->normal[0][m]), pls_vd_load(&work->normal[1][m]), pls_vd_load(&work->normal[2][m])};
+    pls_vd radii = plain ? pls_vd_set(both_radii) : pls_vd_load(&work->delta[m]), square = dot(d, d), distance = pls_vd_sqrt(square),
+           inv = 1.0 / distance;
+    for (int a = 0; a < 3; ++a) pls_vd_store(&work->normal[a][m], d[a] * inv);
+    pls_vd_store(&work->delta[m], radii - distance);
+    pls_vd_store(&work->distance[m], distance);
+    pls_vd_store(&work->inv_distance[m], inv);
+    return pls_vd_less(square, radii * radii);
 }
 
 // ---- frame ------------------------------------------------------------------------------------------------------------------------------------------------
 
 /// 1 where velocities are those of the surface points, 0 where they are those of the contact point.
 static inline double surface_of(const pls_law *law) { return law->lever_at_surface ? 1.0 : 0.0; }
-
-/// Velocities at the contact point at the end of the step.
-static inline __attribute__((always_inline)) void slip_of_pairs(const pls_pair_list *list, double surface, size_t count,
-                                                                pls_contact_work *work, int plain)
-{
-    const int skewed = !plain && !list->equal_radii;
-    for (size_t k = 0; k < count; k += PLS_W)
-    {
-        pls_vd n[3], end[3], arm[3], turn[3], lever = 0.5 * (pls_vd_load(&work->distance[k]) + surface * pls_vd_load(&work->delta[k]));
-        for (int a = 0; a < 3; ++a)
-        {
-            n[a] = pls_vd_load(&work->normal[a][k]);
-            end[a] = pls_vd_load(&work->slip_velocity[a][k]);
-            arm[a] = lever * pls_vd_load(&work->spin_end[a][k]);
-            if (skewed) arm[a] = arm[a] + pls_vd_load(&work->skew_end[a][k]);
-        }
-        cross(turn, arm, n);
-        pls_vd en = dot(end, n);
-        for (int a = 0; a < 3; ++a) pls_vd_store(&work->slip_velocity[a][k], turn[a] - (end[a] - en * n[a]));
-        pls_vd_store(&work->normal_velocity[k], -en);
-    }
-}
 
 /// Carry a spring along with the contact frame, whose normal comes to n from n - 2 tilt in the step while the frame turns by `angle` about it, and add the step's
 /// displacement. The rotation that takes the old normal to n takes s, at right angles to the old one, to s - (s . n) (n - tilt) up to fourth order.
@@ -331,87 +298,75 @@ static inline unsigned fresh_lanes(const pls_contact_work *work, size_t k)
     return ((unsigned)work->fresh[k >> 3] >> (k & 7)) & ((1u << PLS_W) - 1);
 }
 
-/// Springs as they would be now had they not slid. Stored ones are in the list's history (`whole`) or in `spring` already.
+/// Velocities at the contact point at the end of the step, and springs as they would be now had they not slid. Stored ones are in the list's history (`whole`)
+/// or in `spring` already.
 ///
 /// With q = u_j - u_i and k = dt/(2 d), half a step back the normal was n - k q_t and the distance d (1 - k q_n). The midpoint's tangential velocity, taken along
 /// with the frame's tilt to now, is (L sum + k (L sum . n) q_t) x n - (1 + k q_n) q_t up to second order in k q, L and sum of the middle. The tilt of the whole
-/// step is that from n - p_t (1 + p_n), p = dt/d q.
-static inline __attribute__((always_inline)) void carry_springs(const pls_pair_list *list, const pls_contact_input *in, double surface,
-                                                                const double *history, size_t numbers, size_t first, size_t count,
-                                                                pls_contact_work *work, int whole, int plain)
+/// step is that from n - p_t (1 + p_n), p = dt/d q; it takes the spring s, at right angles to the old normal, to s_t + e q_t, e = (s . n) k (1 + 2 k q_n), up to
+/// fourth order. The frame has turned about n by a = dt/2 sum . n, and the step's displacement by half of it. All together, with G = dt L sum, f = k G . n and
+/// D = dt (1 + k q_n):
+///
+///     s <- [s cos a + (e cos a + f a/2 - D) q + G a/2]_t + n x [s sin a + (e sin a - f - D a/2) q - G]
+static inline __attribute__((always_inline)) void carry_lanes(const pls_pair_list *list, const pls_contact_input *in, double surface,
+                                                              const double *spring, size_t stride, unsigned fresh, size_t m,
+                                                              pls_contact_work *work, int plain)
 {
     const int growing = !plain && in->growing, skewed = !plain && !list->equal_radii;
-    const double dt = in->dt;
-    for (size_t k = 0; k < count; k += PLS_W)
+    const double dt = in->dt, half_dt = 0.5 * dt;
+    pls_vd n[3], end[3], arm[3], slip[3], q[3], sum[3], s[3], distance = pls_vd_load(&work->distance[m]);
+    for (int a = 0; a < 3; ++a)
     {
-        if (whole && in->large) fetch_bodies(list, in, first + k + PLS_CONTACT_BLOCK);
-        pls_vd n[3], q[3], sum[3], arm[3], turn[3], tilt[3], step[3], spring[3], distance = pls_vd_load(&work->distance[k]);
-        for (int a = 0; a < 3; ++a)
-        {
-            n[a] = pls_vd_load(&work->normal[a][k]);
-            q[a] = pls_vd_load(&work->velocity[a][k]);
-            sum[a] = pls_vd_load(&work->spin[a][k]);
-            spring[a] = pls_vd_load(whole ? history + k / 8 * 8 * numbers + k % 8 + 8 * (size_t)a : &work->spring[a][k]);
-        }
-        pls_vd qn = dot(q, n), spin = dot(sum, n), ratio = (0.5 * dt) * pls_vd_load(&work->inv_distance[k]), less = ratio * qn;
-        pls_vd lever = 0.5 * (distance - distance * less);
-        if (surface != 0.0)
-        {
-            lever = 0.5 * (distance + pls_vd_load(&work->delta[k]));
-            if (growing) lever = lever - 0.5 * pls_vd_load(&work->growth[k]);
-        }
-        for (int a = 0; a < 3; ++a)
-        {
-            arm[a] = lever * sum[a];
-            if (skewed) arm[a] = arm[a] + pls_vd_load(&work->skew[a][k]);
-        }
-        pls_vd lift = ratio * (skewed ? dot(arm, n) : lever * spin), ahead = 1.0 + less, lean = ratio * (ahead + less);
-        for (int a = 0; a < 3; ++a)
-        {
-            q[a] = q[a] - qn * n[a];
-            arm[a] = arm[a] + lift * q[a];
-            tilt[a] = lean * q[a];
-        }
-        cross(turn, arm, n);
-        for (int a = 0; a < 3; ++a) step[a] = dt * (turn[a] - ahead * q[a]);
-        carry_spring(spring, n, tilt, (0.5 * dt) * spin, step);
-        if (fresh_lanes(work, k)) begin_springs(work, k, dt, fresh_lanes(work, k), step, spring);
-        for (int a = 0; a < 3; ++a) pls_vd_store(&work->spring[a][k], spring[a]);
+        n[a] = pls_vd_load(&work->normal[a][m]);
+        end[a] = pls_vd_load(&work->slip_velocity[a][m]);
+        q[a] = pls_vd_load(&work->velocity[a][m]);
+        sum[a] = pls_vd_load(&work->spin[a][m]);
+        s[a] = pls_vd_load(spring + (size_t)a * stride);
     }
+    pls_vd qn = dot(q, n), spin = dot(sum, n), sn = dot(s, n), en = dot(end, n);
+    pls_vd ratio = half_dt * pls_vd_load(&work->inv_distance[m]), less = ratio * qn;
+    pls_vd lever = 0.5 * distance, reach = half_dt * (distance - half_dt * qn);
+    if (surface != 0.0)
+    {
+        lever = 0.5 * (distance + pls_vd_load(&work->delta[m]));
+        reach = dt * lever;
+        if (growing) reach = reach - half_dt * pls_vd_load(&work->growth[m]);
+    }
+
+    for (int a = 0; a < 3; ++a)
+    {
+        arm[a] = lever * pls_vd_load(&work->spin_end[a][m]);
+        if (skewed) arm[a] = arm[a] + pls_vd_load(&work->skew_end[a][m]);
+    }
+    cross(slip, arm, n);
+    for (int a = 0; a < 3; ++a)
+    {
+        slip[a] = slip[a] - (end[a] - en * n[a]);
+        pls_vd_store(&work->slip_velocity[a][m], slip[a]);
+    }
+    pls_vd_store(&work->normal_velocity[m], -en);
+
+    pls_vd angle = half_dt * spin, half = (0.5 * half_dt) * spin, square = angle * angle; // far less than a radian: series
+    pls_vd cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0));
+    pls_vd sine = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)));
+    pls_vd drift = dt + dt * less, lean = sn * (ratio * (1.0 + (less + less)));
+    pls_vd turning[3], turned[3], g[3];
+    for (int a = 0; a < 3; ++a)
+    {
+        g[a] = reach * sum[a];
+        if (skewed) g[a] = g[a] + dt * pls_vd_load(&work->skew[a][m]);
+    }
+    pls_vd gn = skewed ? dot(g, n) : reach * spin, lift = ratio * gn;
+    pls_vd along = lean * cosine + (lift * half - drift), across = lean * sine - (lift + drift * half);
+    pls_vd normal = cosine * sn + (along * qn + half * gn);
+    for (int a = 0; a < 3; ++a) turning[a] = sine * s[a] + (across * q[a] - g[a]);
+    cross(turned, n, turning);
+    for (int a = 0; a < 3; ++a) s[a] = (cosine * s[a] + (along * q[a] + half * g[a])) + (turned[a] - normal * n[a]);
+    if (fresh) begin_springs(work, m, dt, fresh, s, s);
+    for (int a = 0; a < 3; ++a) pls_vd_store(&work->spring[a][m], s[a]);
 }
 
 // ---- law ------------------------------------------------------------------------------------------------------------------------------------------------
-
-/// The linear law on all candidates of the block; springs go back to the history of those that touch.
-static inline __attribute__((always_inline)) void answer_linear(const pls_pair_list *list, const pls_contact_input *in,
-                                                                const pls_pair_section *section, const pls_pair_block *block,
-                                                                double *history, pls_contact_work *work)
-{
-    const pls_linear_values law = pls_linear_take(in->laws->law[section->law].constants, in->dt);
-    for (size_t k = 0; k < block->count; k += PLS_W)
-    {
-        const size_t c = block->first + k;
-        if (in->large) fetch_slots(list, section, c + PLS_CONTACT_BLOCK, 0);
-        const pls_vm touching = pls_vm_of((unsigned)(list->touch[c >> 3] >> (c & 7)));
-        double *stored = history + k / 8 * 8 * (size_t)section->numbers + k % 8;
-        pls_vd v[3], spring[3];
-        for (int a = 0; a < 3; ++a)
-        {
-            v[a] = pls_vd_load(&work->slip_velocity[a][k]);
-            spring[a] = pls_vd_load(&work->spring[a][k]);
-        }
-        pls_linear_lanes out;
-        pls_linear_answer(&law, pls_vd_load(&work->delta[k]), pls_vd_load(&work->normal_velocity[k]), v, spring, &out);
-        for (int a = 0; a < 3; ++a)
-        {
-            pls_vd_store(stored + 8 * a, pls_vd_choose(touching, out.spring[a], pls_vd_load(stored + 8 * a)));
-            pls_vd_store(&work->shear_force[a][k], out.shear_force[a]);
-        }
-        pls_vd_store(&work->normal_force[k], out.normal_force);
-        pls_vd_store(&work->damping_power[k], out.damping_power);
-        pls_vd_store(&work->slip_work[k], out.slip_work);
-    }
-}
 
 static void load_effective(const pls_pair_list *list, const pls_contact_input *in, pls_contact_work *work)
 {
@@ -452,41 +407,82 @@ static inline int lanes_left(const pls_contact_work *work, size_t k)
     return work->active_count - k < PLS_W ? (int)(work->active_count - k) : PLS_W;
 }
 
-/// Force on i, power, d/2 n x F and work into the slots of the candidates. What lies in the slots of candidates that do not touch is never read.
-static inline __attribute__((always_inline)) void store_pairs(const pls_pair_list *list, const pls_contact_input *in,
-                                                              const pls_pair_block *block, const pls_contact_work *work, int whole,
-                                                              int plain)
+/// Force on i, power, d/2 n x F and work of contacts k .. into `row`s, their slots. What lies in the slots of candidates that do not touch is never read.
+static inline __attribute__((always_inline)) void store_lanes(const pls_contact_work *work, size_t k, const pls_vd shear[3],
+                                                              pls_vd slip_work, double *const *row, int lanes)
 {
-    const size_t count = whole ? block->count : work->active_count;
-    for (size_t k = 0; k < count; k += PLS_W)
+    pls_vd n[3], torque[3], column[8], half = 0.5 * pls_vd_load(&work->distance[k]), normal = pls_vd_load(&work->normal_force[k]);
+    for (int a = 0; a < 3; ++a) n[a] = pls_vd_load(&work->normal[a][k]);
+    cross(torque, n, shear);
+    for (int a = 0; a < 3; ++a)
     {
-        pls_vd n[3], ft[3], torque[3], column[8];
-        pls_vd fn = pls_vd_load(&work->normal_force[k]), half = 0.5 * pls_vd_load(&work->distance[k]);
-        for (int a = 0; a < 3; ++a)
-        {
-            n[a] = pls_vd_load(&work->normal[a][k]);
-            ft[a] = pls_vd_load(&work->shear_force[a][k]);
-        }
-        cross(torque, n, ft);
-        for (int a = 0; a < 3; ++a)
-        {
-            column[a] = ft[a] - fn * n[a];
-            column[4 + a] = half * torque[a];
-        }
-        column[3] = pls_vd_load(&work->damping_power[k]);
-        column[7] = pls_vd_load(&work->slip_work[k]);
+        column[a] = shear[a] - normal * n[a];
+        column[4 + a] = half * torque[a];
+    }
+    column[3] = pls_vd_load(&work->damping_power[k]);
+    column[7] = slip_work;
+    pls_rows8(column, row, lanes);
+}
+
+static inline void store_skew(const pls_pair_list *list, const pls_contact_input *in, size_t c, double inv_distance)
+{
+    list->skew[c] = (in->place[list->row_i[c]].radius - in->place[list->row_j[c]].radius) * inv_distance;
+}
+
+/// The linear law on place m of the arrays, first part: forces had nothing slid.
+static inline __attribute__((always_inline)) void try_lanes(const pls_linear_values *law, pls_contact_work *work, size_t m)
+{
+    pls_linear_trial t;
+    pls_vd v[3], s[3];
+    for (int a = 0; a < 3; ++a)
+    {
+        v[a] = pls_vd_load(&work->slip_velocity[a][m]);
+        s[a] = pls_vd_load(&work->spring[a][m]);
+    }
+    pls_linear_try(law, pls_vd_load(&work->delta[m]), pls_vd_load(&work->normal_velocity[m]), v, s, &t);
+    for (int a = 0; a < 3; ++a) pls_vd_store(&work->shear_force[a][m], t.shear[a]);
+    pls_vd_store(&work->normal_force[m], t.normal_force);
+    pls_vd_store(&work->damping_power[m], t.damping_power);
+    pls_vd_store(&work->factor[m], t.shear_square);
+    pls_vd_store(&work->cone[m], t.cone);
+}
+
+static inline __attribute__((always_inline)) void factor_lanes(pls_contact_work *work, size_t m)
+{
+    pls_vd_store(&work->factor[m], pls_linear_factor(pls_vd_load(&work->factor[m]), pls_vd_load(&work->cone[m])));
+}
+
+/// Last part: sliding; springs of lanes that touch go back to their history, forces to the slots.
+static inline __attribute__((always_inline)) void settle_lanes(const pls_linear_values *law, pls_vm touching, double *history, double *slot,
+                                                               size_t m, pls_contact_work *work)
+{
+    double *row[PLS_W];
+    pls_vd v[3], spring[3], shear[3];
+    for (int a = 0; a < 3; ++a)
+    {
+        v[a] = pls_vd_load(&work->slip_velocity[a][m]);
+        spring[a] = pls_vd_load(&work->spring[a][m]);
+        shear[a] = pls_vd_load(&work->shear_force[a][m]);
+    }
+    pls_vd slip_work = pls_linear_settle(law, pls_vd_load(&work->factor[m]), v, shear, spring);
+    for (int a = 0; a < 3; ++a) pls_vd_store(history + 8 * a, pls_vd_choose(touching, spring[a], pls_vd_load(history + 8 * a)));
+    for (int lane = 0; lane < PLS_W; ++lane) row[lane] = slot + lane * PLS_SLOT;
+    store_lanes(work, m, shear, slip_work, row, PLS_W);
+}
+
+/// What any law answered for the picked contacts.
+static void store_pairs(const pls_pair_list *list, const pls_contact_input *in, const pls_contact_work *work)
+{
+    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    {
+        const int lanes = lanes_left(work, k);
         double *row[PLS_W];
-#pragma GCC unroll 8
-        for (int lane = 0; lane < PLS_W; ++lane)
-            row[lane] = list->slot + (whole ? block->first + k + (size_t)lane : work->active[k + (size_t)lane]) * PLS_SLOT;
-        const int lanes = whole ? PLS_W : lanes_left(work, k);
-        pls_rows8(column, row, lanes);
-        if (plain || list->equal_radii) continue;
-        for (int lane = 0; lane < lanes; ++lane)
-        {
-            size_t c = whole ? block->first + k + (size_t)lane : work->active[k + (size_t)lane];
-            list->skew[c] = (in->place[list->row_i[c]].radius - in->place[list->row_j[c]].radius) * work->inv_distance[k + (size_t)lane];
-        }
+        for (int lane = 0; lane < PLS_W; ++lane) row[lane] = list->slot + (size_t)work->active[k + (size_t)lane] * PLS_SLOT;
+        pls_vd shear[3];
+        for (int a = 0; a < 3; ++a) shear[a] = pls_vd_load(&work->shear_force[a][k]);
+        store_lanes(work, k, shear, pls_vd_load(&work->slip_work[k]), row, lanes);
+        for (int lane = 0; !list->equal_radii && lane < lanes; ++lane)
+            store_skew(list, in, work->active[k + (size_t)lane], work->inv_distance[k + (size_t)lane]);
     }
 }
 
@@ -684,40 +680,109 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
         frame_walls(list, in, section, work, &wall);
     else
     {
-        load_pairs(list, in, section, block, work, 0, 0);
-        measure_pairs(list, section, block, work, 0);
-        slip_of_pairs(list, surface, work->active_count, work, 0);
-        carry_springs(list, in, surface, NULL, 0, 0, work->active_count, work, 0, 0);
+        for (size_t k = 0; k < work->active_count; k += PLS_W) load_lanes(list, in, 0, k, k, work, 0, 0);
+        for (size_t k = 0; k < work->active_count; k += PLS_W) measure_lanes(work, k, 0.0, 0);
+        for (size_t k = 0; k < work->active_count; k += PLS_W)
+            carry_lanes(list, in, surface, &work->spring[0][k], PLS_CONTACT_BLOCK, fresh_lanes(work, k), k, work, 0);
         if (law->ops->needs_effective) load_effective(list, in, work);
     }
     pls_contact_law(law, in->dt, (work->active_count + 7) / 8 * 8, work);
     if (section->wall)
         store_walls(list, work);
     else
-        store_pairs(list, in, block, work, 0, 0);
+        store_pairs(list, in, work);
     store_history(list, section, work);
 }
 
-/// All candidates of the block, the linear law.
+/// All candidates of the block, the linear law: as on a conveyor, each eight one place further in each turn. So neighbouring instructions belong to different
+/// contacts and do not wait for each other, the units for shuffles, products and roots are busy at the same time, and what is passed on stays in a small ring.
 static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list, const pls_contact_input *in,
                                                              const pls_pair_section *section, const pls_pair_block *block,
                                                              pls_contact_work *work, int plain)
 {
-    double *history = pls_pair_history(list, section, block->first);
+    enum { MEASURE = 8, CARRY = 16, TRY = 24, FACTOR = 32, SETTLE = 40, RING = 64 };
     const double surface = surface_of(&in->laws->law[section->law]);
-    load_pairs(list, in, section, block, work, 1, plain);
-    measure_pairs(list, section, block, work, 1);
-    slip_of_pairs(list, surface, block->count, work, plain);
-    carry_springs(list, in, surface, history, (size_t)section->numbers, block->first, block->count, work, 1, plain);
-    answer_linear(list, in, section, block, history, work);
-    store_pairs(list, in, block, work, 1, plain);
+    const pls_linear_values law = pls_linear_take(in->laws->law[section->law].constants, in->dt);
+    const size_t first = block->first, count = (block->count + 7) / 8 * 8, onwards = 8 * (size_t)section->numbers;
+    const double both_radii = 2.0 * in->place[list->row_i[first]].radius;
+    // Copies that no store of a byte can change, as far as compilers know.
+    const pls_pair_list pairs = *list;
+    const pls_contact_input input = *in;
+    double *old = pls_pair_history(&pairs, section, first), *kept = old, *slot = pairs.slot + first * PLS_SLOT;
+    for (size_t turn = 0; turn < count + SETTLE; turn += 8)
+    {
+        size_t k = turn, m = k % RING;
+        if (k < count)
+        {
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W)
+            {
+                if (input.vast || !input.large) fetch_slots(&pairs, section, first + k + v, 1);
+                load_lanes(&pairs, &input, first, k + v, m + v, work, 1, plain);
+            }
+        }
+        k = turn - MEASURE, m = k % RING;
+        if (k < count)
+        {
+            unsigned now = 0;
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W) now |= measure_lanes(work, m + v, both_radii, plain) << v;
+            if (k + 8 > block->count) now &= valid_lanes(block, k);
+            work->now[k >> 3] = (uint8_t)now;
+            work->fresh[k >> 3] = (uint8_t)note_touching(list, section, first + k, now);
+        }
+        k = turn - CARRY, m = k % RING;
+        if (k < count)
+        {
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W)
+            {
+                if (input.large) fetch_bodies(&pairs, &input, first + k + v + PLS_CONTACT_BLOCK);
+                carry_lanes(&pairs, &input, surface, old + v, 8, fresh_lanes(work, k + v), m + v, work, plain);
+            }
+            old += onwards;
+        }
+        k = turn - TRY, m = k % RING;
+        if (k < count)
+        {
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W) try_lanes(&law, work, m + v);
+        }
+        k = turn - FACTOR, m = k % RING;
+        if (k < count)
+        {
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W) factor_lanes(work, m + v);
+        }
+        k = turn - SETTLE, m = k % RING;
+        if (k < count)
+        {
+#pragma GCC unroll 2
+            for (size_t v = 0; v < 8; v += PLS_W)
+            {
+                if (input.large) fetch_slots(&pairs, section, first + k + v + PLS_CONTACT_BLOCK, 0);
+                settle_lanes(&law, pls_vm_of((unsigned)work->now[k >> 3] >> v), kept + v, slot + v * PLS_SLOT, m + v, work);
+                for (size_t lane = v; !plain && !pairs.equal_radii && lane < v + PLS_W; ++lane)
+                    store_skew(&pairs, &input, first + k + lane, work->inv_distance[m + lane]);
+            }
+            kept += onwards;
+            slot += 8 * PLS_SLOT;
+        }
+    }
 }
 
 /// Did so many of the block's candidates touch at the last step that picking them does not pay?
 static bool whole_pays(const pls_pair_list *list, const pls_pair_block *block)
 {
-    size_t touching = 0;
-    for (size_t c = block->first; c < block->first + block->count; c += 8) touching += (size_t)__builtin_popcount(list->touch[c >> 3]);
+    size_t touching = 0, bytes = (block->count + 7) / 8;
+    const uint8_t *touch = list->touch + (block->first >> 3);
+    unsigned long long eight;
+    for (; bytes >= 8; bytes -= 8, touch += 8)
+    {
+        memcpy(&eight, touch, sizeof eight);
+        touching += (size_t)__builtin_popcountll(eight);
+    }
+    for (; bytes > 0; --bytes, ++touch) touching += (size_t)__builtin_popcount(*touch);
     return 16 * touching >= WHOLE_FROM * (size_t)block->count;
 }
 

@@ -25,43 +25,53 @@ static inline pls_linear_values pls_linear_take(const double *constants, double 
                                constants[PLS_LINEAR_FLOOR], 0.5 * constants[PLS_LINEAR_KS], dt};
 }
 
-typedef struct pls_linear_lanes
+/// The contacts had they not slid.
+typedef struct pls_linear_trial
 {
-    pls_vd normal_force;   ///< [N]
-    pls_vd shear_force[3]; ///< on i [N]
-    pls_vd spring[3];      ///< after sliding [m]
-    pls_vd damping_power;  ///< [W]
-    pls_vd slip_work;      ///< [J]
-} pls_linear_lanes;
+    pls_vd shear[3];      ///< minus the force on i [N]
+    pls_vd shear_square;  ///< [N^2]
+    pls_vd cone;          ///< largest shear force, or minus it [N]
+    pls_vd normal_force;  ///< [N]
+    pls_vd damping_power; ///< [W]
+} pls_linear_trial;
 
-/// v: slip velocity [m/s]; s: spring had it not slid [m].
-static inline __attribute__((always_inline)) void pls_linear_answer(const pls_linear_values *law, pls_vd delta, pls_vd vn,
-                                                                    const pls_vd v[3], const pls_vd s[3], pls_linear_lanes *out)
+/// v: slip velocity [m/s]; s: spring [m].
+static inline __attribute__((always_inline)) void pls_linear_try(const pls_linear_values *law, pls_vd delta, pls_vd vn, const pls_vd v[3],
+                                                                 const pls_vd s[3], pls_linear_trial *out)
 {
-    const pls_vd tiny = pls_vd_set(1e-300);
-    pls_vd spring_force = law->kn * delta, fn = pls_vd_max(spring_force + law->cn * vn, pls_vd_set(law->floor_force));
-    pls_vd dash[3], trial[3]; // minus the forces
+    pls_vd spring_force = law->kn * delta, dash[3];
+    out->normal_force = pls_vd_max(spring_force + law->cn * vn, pls_vd_set(law->floor_force));
+    out->cone = law->mu * out->normal_force;
     for (int a = 0; a < 3; ++a)
     {
         dash[a] = law->cs * v[a];
-        trial[a] = law->ks * s[a] + dash[a];
+        out->shear[a] = law->ks * s[a] + dash[a];
     }
-    pls_vd cone = law->mu * pls_vd_max(fn, -fn);
-    pls_vd shear = pls_vd_sqrt(trial[0] * trial[0] + trial[1] * trial[1] + trial[2] * trial[2]);
-    const pls_vm slides = pls_vm_less(cone, shear);
-    pls_vd factor = -(cone / pls_vd_max(pls_vd_max(shear, cone), tiny)); // exactly -1 where nothing slides
-    pls_vd work = pls_vd_set(0.0), power = (fn - spring_force) * vn;
+    out->shear_square = out->shear[0] * out->shear[0] + out->shear[1] * out->shear[1] + out->shear[2] * out->shear[2];
+    out->damping_power = (out->normal_force - spring_force) * vn + (dash[0] * v[0] + dash[1] * v[1] + dash[2] * v[2]);
+}
+
+/// What the trial is multiplied by: -1 where nothing slides. The root and the division take long and hardly any units.
+static inline __attribute__((always_inline)) pls_vd pls_linear_factor(pls_vd shear_square, pls_vd cone)
+{
+    const pls_vm slides = pls_vm_less(cone * cone, shear_square);
+    return pls_vd_choose(slides, pls_vd_min(cone, -cone) / pls_vd_sqrt(shear_square), pls_vd_set(-1.0));
+}
+
+/// Shear force on i from the trial, the spring that is left, and the work of sliding [J].
+static inline __attribute__((always_inline)) pls_vd pls_linear_settle(const pls_linear_values *law, pls_vd factor, const pls_vd v[3],
+                                                                      pls_vd shear[3], pls_vd s[3])
+{
+    const pls_vm slides = pls_vm_less(pls_vd_set(-1.0), factor);
+    pls_vd work[3];
     for (int a = 0; a < 3; ++a)
     {
-        pls_vd f = trial[a] * factor, left = pls_vd_choose(slides, (f + dash[a]) * law->minus_inv_ks, s[a]);
-        work = work + (left + s[a] - law->dt * v[a]) * (s[a] - left);
-        power = power + dash[a] * v[a];
-        out->shear_force[a] = f;
-        out->spring[a] = left;
+        shear[a] = shear[a] * factor;
+        pls_vd left = pls_vd_choose(slides, (shear[a] + law->cs * v[a]) * law->minus_inv_ks, s[a]);
+        work[a] = (left + s[a] - law->dt * v[a]) * (s[a] - left);
+        s[a] = left;
     }
-    out->normal_force = fn;
-    out->damping_power = power;
-    out->slip_work = law->half_ks * work;
+    return law->half_ks * (work[0] + work[1] + work[2]);
 }
 
 #endif

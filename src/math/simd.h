@@ -102,6 +102,20 @@ static inline pls_vd pls_vd_max(pls_vd a, pls_vd b)
 #endif
 }
 
+/// a < b ? a : b
+static inline pls_vd pls_vd_min(pls_vd a, pls_vd b)
+{
+#if defined(__AVX512F__)
+    return (pls_vd)_mm512_min_pd((__m512d)a, (__m512d)b);
+#elif defined(__AVX2__)
+    return (pls_vd)_mm256_min_pd((__m256d)a, (__m256d)b);
+#elif defined(__SSE2__)
+    return (pls_vd)_mm_min_pd((__m128d)a, (__m128d)b);
+#else
+    return pls_vd_pick((pls_vi)(a < b), a, b);
+#endif
+}
+
 /// Which lanes: bits of a mask register, or lanes all ones or all zeros.
 #if defined(__AVX512F__)
 typedef __mmask8 pls_vm;

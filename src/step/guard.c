@@ -2,6 +2,8 @@
 
 #include "step/world.h"
 
+#include "base/parallel.h"
+
 static const double far_away = 1000.0; ///< sizes of the first arrangement; who goes further is lost
 
 pls_status pls_guard_finite(pls_world *world)
@@ -37,6 +39,33 @@ static pls_status overlap_failure(const pls_world *world, uint32_t i, uint32_t j
         radius, world->def.max_overlap);
 }
 
+/// Overlap of a touching candidate and the smaller radius; n: of the section's wall.
+static double overlap_of(const pls_world *world, const pls_pair_section *section, pls_vec3 n, size_t c, double *radius)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_body_place *p = &world->bodies.place[list->row_i[c]], *q = &world->bodies.place[list->row_j[c]];
+    double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z};
+    *radius = section->wall ? p->radius : fmin(p->radius, q->radius);
+    if (section->wall) return p->radius + n.x * d[0] + n.y * d[1] + n.z * d[2];
+    for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
+    return p->radius + q->radius - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+/// First candidate of a section that overlaps too much, or its end.
+static size_t first_runaway(const pls_world *world, const pls_pair_section *section, pls_vec3 n)
+{
+    const size_t end = section->first + section->count;
+    size_t runaway = end;
+#pragma omp parallel for schedule(static) reduction(min : runaway) if (section->count > PLS_BLOCK)
+    for (size_t c = section->first; c < end; ++c)
+    {
+        double radius;
+        if (pls_pair_touches(&world->list, c) && overlap_of(world, section, n, c, &radius) > world->def.max_overlap * radius)
+            runaway = c < runaway ? c : runaway;
+    }
+    return runaway;
+}
+
 pls_status pls_guard_overlap(pls_world *world)
 {
     const pls_pair_list *list = &world->list;
@@ -46,21 +75,10 @@ pls_status pls_guard_overlap(pls_world *world)
         const pls_pair_section *section = &list->section[s];
         pls_vec3 n = {0};
         if (section->wall) n = pls_wall_normal(&b->orientation[section->wall_row], world->def.dimension);
-        for (size_t c = section->first; c < section->first + section->count; ++c)
-        {
-            if (!pls_pair_touches(list, c)) continue;
-            const pls_body_place *p = &b->place[list->row_i[c]], *q = &b->place[list->row_j[c]];
-            double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta, radius = p->radius;
-            if (section->wall)
-                delta = p->radius + n.x * d[0] + n.y * d[1] + n.z * d[2];
-            else
-            {
-                for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
-                delta = p->radius + q->radius - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                radius = fmin(p->radius, q->radius);
-            }
-            if (delta > world->def.max_overlap * radius) return overlap_failure(world, list->row_i[c], list->row_j[c], delta, radius);
-        }
+        const size_t c = first_runaway(world, section, n);
+        if (c == section->first + section->count) continue;
+        double radius, delta = overlap_of(world, section, n, c, &radius);
+        return overlap_failure(world, list->row_i[c], list->row_j[c], delta, radius);
     }
     for (size_t c = 0; c < world->solids.count; ++c)
     {

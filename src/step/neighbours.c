@@ -80,16 +80,28 @@ static void fit_skin(pls_world *world)
     }
 }
 
+/// Move the curve's origin so that its first cuts go through the middle of the arrangement: halves of the rows then lie on either side of a plane, and threads
+/// that share them share few contacts.
+static void centre_curve(double lower[3], const double upper[3], double cell)
+{
+    double half = cell;
+    for (int a = 0; a < 3; ++a)
+        while (2.0 * half < upper[a] - lower[a] + cell) half *= 2.0;
+    for (int a = 0; a < 3 && isfinite(half); ++a) lower[a] = 0.5 * (lower[a] + upper[a]) - half;
+}
+
 /// Put bodies into the order of a space-filling curve. The contacts must be in `memory`.
 static pls_status order_bodies(pls_world *world)
 {
     pls_bodies *bodies = &world->bodies;
-    double lower[3] = {INFINITY, INFINITY, INFINITY}, cell = 2.0 * mean_radius(world);
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY}, cell = 2.0 * mean_radius(world);
     for (size_t row = 0; row < bodies->count; ++row)
     {
         const double x[3] = {bodies->place[row].x, bodies->place[row].y, bodies->place[row].z};
-        for (int a = 0; a < 3 && !(bodies->kind[row].flags & PLS_BODY_UNBOUNDED); ++a) lower[a] = fmin(lower[a], x[a]);
+        for (int a = 0; a < 3 && !(bodies->kind[row].flags & PLS_BODY_UNBOUNDED); ++a)
+            lower[a] = fmin(lower[a], x[a]), upper[a] = fmax(upper[a], x[a]);
     }
+    centre_curve(lower, upper, cell);
     uint64_t *key = NULL;
     uint32_t *old_row = NULL;
     pls_status status = pls_allocate(&key, bodies->count, sizeof *key, "ordering bodies");
@@ -196,12 +208,14 @@ static pls_status build_lists(pls_world *world)
     return status;
 }
 
+bool pls_neighbours_hold(const pls_world *world) { return !world->list.stale && world->list.drift < world->list.skin; }
+
 pls_status pls_neighbours_refresh(pls_world *world)
 {
     pls_pair_list *list = &world->list;
+    if (pls_neighbours_hold(world)) return PLS_OK;
     if (!list->stale)
     {
-        if (list->drift < list->skin) return PLS_OK;
         list->drift = true_drift(world);
         if (list->drift < 0.9 * list->skin) return PLS_OK;
     }

@@ -9,35 +9,10 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
+#include "step/sweep.h"
 #include "step/timestep.h"
-#include "step/velocity_verlet.h"
 
-#include <omp.h>
-#include <string.h>
-
-enum {
-    GUARD_STEPS = 64,    ///< steps between looks at overlaps and lost bodies
-    STABLE_STEPS = 4096, ///< steps between looks at the stable step
-    SERIAL_BLOCKS = 4,   ///< a loop of no more blocks is not worth waking other threads for
-    POSE_BLOCK = 64,     ///< solid bodies whose poses are computed at a time
-    READY_GROUPS = 32,   ///< groups of rows that are finished at a time, if so many are ready
-    BODY_BLOCK = 256     ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
-};
-
-static pls_status finish_block(pls_world *world, size_t first, size_t last, double dt, double time, bool go_on, pls_drift_report *report)
-{
-    double force[4 * BODY_BLOCK] __attribute__((aligned(64))), torque[4 * BODY_BLOCK] __attribute__((aligned(64)));
-    double scratch[PLS_FORCE_SCRATCH] __attribute__((aligned(64)));
-    const bool solid = world->solids.count > 0, forced = world->force_count > 0 || solid;
-    if (world->force_count > 0)
-        PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
-    else if (solid)
-        memset(force, 0, (last - first) * 4 * sizeof *force), memset(torque, 0, (last - first) * 4 * sizeof *torque);
-    if (solid) pls_solid_gather(&world->solids, first, last, force, torque);
-    PLS_SIMD_SELECT(pls_verlet_finish)
-    (&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL, go_on, report);
-    return PLS_OK;
-}
+enum { STABLE_STEPS = 4096 }; ///< steps between looks at the stable step
 
 pls_contact_input pls_contact_input_of(const pls_world *world, double dt)
 {
@@ -55,224 +30,28 @@ pls_contact_input pls_contact_input_of(const pls_world *world, double dt)
                                .dt = dt};
 }
 
-static void add_report(pls_drift_report *total, const pls_drift_report *part)
-{
-    if (part->largest_square > total->largest_square) total->largest_square = part->largest_square;
-    total->poison += part->poison; // zeros, or NaN: no order to keep
-}
-
-/// Stop where something is not finite; `moved`: the report is that of a drift.
-static pls_status judge(pls_world *world, const pls_drift_report *total, bool moved)
-{
-    if (total->poison != 0.0 || isnan(total->poison)) PLS_TRY(pls_guard_finite(world));
-    if (moved) pls_neighbours_moved(world, total->largest_square);
-    return PLS_OK;
-}
-
-static pls_status begin_bodies(pls_world *world)
-{
-    pls_bodies *bodies = &world->bodies;
-    pls_drift_report total = {0.0, 0.0};
-#pragma omp parallel if (bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
-    {
-        pls_drift_report mine = {0.0, 0.0}, part;
-#pragma omp for schedule(static)
-        for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
-        {
-            PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
-            add_report(&mine, &part);
-        }
-#pragma omp critical(pls_drift_report)
-        add_report(&total, &mine);
-    }
-    return judge(world, &total, true);
-}
-
-// ---- contacts, forces, velocities --------------------------------------------------------------------------------------------------------------------------
-
-/// What the threads of a sweep share.
-typedef struct sweep
-{
-    pls_world *world;
-    pls_contact_input input;
-    double time; ///< of the forces [s]
-    bool go_on;  ///< each body begins its next step at once, while its rows are at hand
-    pls_drift_report total;
-    pls_status worst;
-    size_t failed_at; ///< first block of the thread that failed
-    char message[512];
-} sweep;
-
-/// The part of one thread: blocks of pairs, and the groups of rows that begin with them.
-typedef struct share
-{
-    int thread;
-    size_t first_block, last_block, first_group, last_group;
-    size_t reached; ///< groups before this one were looked at while their forces were fresh
-    pls_drift_report report;
-    pls_narrow_counts counts;
-    pls_status status;
-} share;
-
-static size_t group_of_block(const pls_pair_list *list, size_t block, size_t groups)
-{
-    return block < list->block_count ? pls_pair_lower_row(list, list->block[block].first) / PLS_ROW_GROUP : groups;
-}
-
-static share share_of(const pls_world *world, int thread, int threads)
-{
-    const pls_pair_list *list = &world->list;
-    size_t groups = pls_block_count(world->bodies.count, PLS_ROW_GROUP), pairs = list->block_count - list->wall_blocks;
-    size_t first = list->wall_blocks + pairs * (size_t)thread / (size_t)threads;
-    size_t last = list->wall_blocks + pairs * ((size_t)thread + 1) / (size_t)threads;
-    return (share){.thread = thread,
-                   .first_block = first,
-                   .last_block = last,
-                   .first_group = thread == 0 ? 0 : group_of_block(list, first, groups),
-                   .last_group = thread == threads - 1 ? groups : group_of_block(list, last, groups)};
-}
-
-static void work_block(sweep *s, share *mine, size_t b)
-{
-    pls_world *world = s->world;
-    const pls_pair_block *block = &world->list.block[b];
-    PLS_SIMD_SELECT(pls_contact_block)(&world->list, &s->input, block, &world->work[mine->thread]);
-    if (s->input.dt > 0.0 && mine->status == PLS_OK) mine->status = pls_find_parted(world, block, &world->parted[mine->thread]);
-}
-
-static void finish_groups(sweep *s, share *mine, size_t first, size_t last)
-{
-    size_t end = last * PLS_ROW_GROUP < s->world->bodies.count ? last * PLS_ROW_GROUP : s->world->bodies.count;
-    for (size_t row = first * PLS_ROW_GROUP; row < end && mine->status == PLS_OK; row += BODY_BLOCK)
-    {
-        pls_drift_report part = {0.0, 0.0};
-        size_t stop = row + BODY_BLOCK < end ? row + BODY_BLOCK : end;
-        mine->status = finish_block(s->world, row, stop, s->input.dt, s->time, s->go_on, &part);
-        add_report(&mine->report, &part);
-    }
-}
-
-/// Finish groups first .. last, which have no pairs in later blocks than are done, except those with pairs in blocks of other threads.
-static void finish_ready(sweep *s, share *mine, size_t first, size_t last)
-{
-    const uint32_t *begins = s->world->list.group_first;
-    for (size_t g = first; g < last;)
-    {
-        size_t end = g;
-        while (end < last && begins[end] >= mine->first_block) ++end;
-        finish_groups(s, mine, g, end);
-        for (g = end; g < last && begins[g] < mine->first_block; ++g) continue;
-    }
-}
-
-/// Finish what had to wait for other threads.
-static void finish_waiting(sweep *s, share *mine)
-{
-    const uint32_t *begins = s->world->list.group_first;
-    for (size_t g = mine->first_group; g < mine->reached;)
-    {
-        size_t end = g;
-        while (end < mine->reached && begins[end] < mine->first_block) ++end;
-        finish_groups(s, mine, g, end);
-        for (g = end; g < mine->reached && begins[g] >= mine->first_block; ++g) continue;
-    }
-    finish_groups(s, mine, mine->reached, mine->last_group);
-}
-
-static void sweep_share(sweep *s, share *mine)
-{
-    const pls_pair_list *list = &s->world->list;
-    mine->reached = mine->first_group;
-    for (size_t b = mine->first_block; b < mine->last_block; ++b)
-    {
-        work_block(s, mine, b);
-        size_t ready = mine->reached;
-        while (ready < mine->last_group && list->group_last[ready] <= b) ++ready;
-        if (ready - mine->reached < READY_GROUPS && b + 1 < mine->last_block) continue;
-        finish_ready(s, mine, mine->reached, ready);
-        mine->reached = ready;
-    }
-}
-
-/// Contacts of solids, all of them: they are few, and each costs far more than passing a body.
-static void sweep_solids(sweep *s, share *mine)
-{
-    pls_solid_list *list = &s->world->solids;
-#pragma omp for schedule(static)
-    for (size_t b = 0; b < pls_block_count(list->row_count, POSE_BLOCK); ++b)
-        pls_solid_pose(list, &s->input, &s->world->bodies, s->world->shape_of, b * POSE_BLOCK,
-                       pls_block_end(b, POSE_BLOCK, list->row_count));
-#pragma omp for schedule(dynamic, 1)
-    for (size_t b = 0; b < list->block_count; ++b)
-    {
-        pls_solid_contacts(list, &s->input, &list->block[b], &s->world->work[mine->thread], &mine->counts);
-        if (s->input.dt > 0.0 && mine->status == PLS_OK)
-            mine->status = pls_find_parted_solids(s->world, &s->input, &list->block[b], &s->world->parted[mine->thread]);
-    }
-}
-
-static void add_counts(pls_narrow_counts *total, const pls_narrow_counts *part)
-{
-    total->queries += part->queries, total->iterations += part->iterations, total->restarts += part->restarts;
-    total->fallbacks += part->fallbacks, total->failures += part->failures;
-}
-
-/// Contacts, and forces and velocities of the end of the step: bodies are finished as soon as their last contact is known, while it is in the cache.
-/// Whatever the order, each contact is computed from bodies that are not yet finished, and each body from all of its contacts.
-static pls_status sweep_world(pls_world *world, double dt, double time, bool go_on)
-{
-    pls_bodies *bodies = &world->bodies;
-    const pls_pair_list *list = &world->list;
-    sweep s = {.world = world, .input = pls_contact_input_of(world, dt), .time = time, .go_on = go_on, .failed_at = SIZE_MAX};
-    for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
-#pragma omp parallel if (list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || \
-                         bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
-    {
-        share mine = share_of(world, omp_get_thread_num(), omp_get_num_threads());
-        if (world->solids.count > 0) sweep_solids(&s, &mine);
-#pragma omp for schedule(static)
-        for (size_t b = 0; b < list->wall_blocks; ++b) work_block(&s, &mine, b);
-        sweep_share(&s, &mine);
-#pragma omp barrier
-        finish_waiting(&s, &mine);
-#pragma omp critical(pls_sweep)
-        {
-            add_report(&s.total, &mine.report);
-            add_counts(&world->solids.counts, &mine.counts);
-            if (mine.status != PLS_OK && mine.first_block <= s.failed_at) // of several failures that of the first thread
-            {
-                s.worst = mine.status;
-                s.failed_at = mine.first_block;
-                strncpy(s.message, pls_last_message(), sizeof s.message - 1); // messages belong to threads; bring it to ours
-            }
-        }
-    }
-    if (s.worst != PLS_OK) return pls_fail(s.worst, "%s", s.message);
-    PLS_TRY(pls_book_parted(world));
-    return judge(world, &s.total, go_on);
-}
-
 static pls_status check_step(pls_world *world)
 {
-    if (world->step % GUARD_STEPS == 0) PLS_TRY(pls_guard_step(world));
-    bool due = world->step % STABLE_STEPS == 0 || (world->step % GUARD_STEPS == 0 && pls_stable_step_is_stale(world));
+    if (world->step % PLS_GUARD_STEPS == 0) PLS_TRY(pls_guard_step(world));
+    bool due = world->step % STABLE_STEPS == 0 || (world->step % PLS_GUARD_STEPS == 0 && pls_stable_step_is_stale(world));
     return due ? pls_check_stable_step(world) : PLS_OK;
 }
 
-/// From the drift to the end of the step; `go_on` runs the next step's half kick and drift along.
-static pls_status complete_step(pls_world *world, bool go_on)
+/// From the drift to the end of the step; `begun`: the next step's half kick and drift are done along. Steps that run into each other are done at once, up to
+/// step `end`.
+static pls_status complete_steps(pls_world *world, uint64_t end, bool *begun)
 {
     PLS_TRY(pls_special_drift(world));
     PLS_TRY(pls_states_advance(world));
     PLS_TRY(pls_states_apply(world));
-    double time = (double)(world->step + 1) * world->dt;
-    pls_domain_at(&world->domain, time);
+    pls_domain_at(&world->domain, (double)(world->step + 1) * world->dt);
     PLS_TRY(pls_neighbours_refresh(world));
-    PLS_TRY(sweep_world(world, world->dt, time, go_on));
-    if (!go_on) pls_special_finish(world);
+    PLS_TRY(pls_sweep(world, world->dt, end, begun));
+    if (*begun) return PLS_OK;
+    pls_special_finish(world);
     ++world->step;
-    world->time = time;
-    return go_on ? PLS_OK : check_step(world);
+    world->time = (double)world->step * world->dt;
+    return check_step(world);
 }
 
 /// Half kick and drift.
@@ -280,31 +59,25 @@ static pls_status begin_step(pls_world *world)
 {
     PLS_TRY(pls_special_before(world));
     pls_states_before(world);
-    return begin_bodies(world);
+    return pls_begin_bodies(world);
 }
 
 pls_status pls_step(pls_world *world)
 {
     PLS_TRY(pls_world_prepare(world));
     PLS_TRY(begin_step(world));
-    return complete_step(world, false);
-}
-
-/// Steps may run into each other where nobody looks in between: no guard is due, and no body or state needs to be asked at the end of the step.
-static bool may_go_on(const pls_world *world)
-{
-    return (world->step + 1) % GUARD_STEPS != 0 && world->special_count == 0 && world->state_count == 0 && world->binding_count == 0;
+    bool begun;
+    return complete_steps(world, world->step + 1, &begun);
 }
 
 pls_status pls_world_run(pls_world *world, uint64_t steps)
 {
     PLS_TRY(pls_world_prepare(world));
-    bool begun = false;
-    for (uint64_t k = 0; k < steps; ++k)
+    const uint64_t end = world->step + steps;
+    for (bool begun = false; world->step < end;)
     {
         if (!begun) PLS_TRY(begin_step(world));
-        begun = k + 1 < steps && may_go_on(world);
-        PLS_TRY(complete_step(world, begun));
+        PLS_TRY(complete_steps(world, end, &begun));
     }
     return PLS_OK;
 }
@@ -334,9 +107,11 @@ static pls_status reserve_work(pls_world *world)
     if (threads <= world->work_count) return PLS_OK;
     pls_parted_free(world);
     pls_release(&world->work);
+    pls_release(&world->left);
     world->work_count = 0;
     PLS_TRY(pls_allocate(&world->work, (size_t)threads, sizeof *world->work, "work space of threads"));
     PLS_TRY(pls_allocate(&world->parted, (size_t)threads, sizeof *world->parted, "work space of threads"));
+    PLS_TRY(pls_allocate(&world->left, (size_t)threads, sizeof *world->left, "work space of threads"));
     world->work_count = threads;
     return PLS_OK;
 }
@@ -384,7 +159,8 @@ pls_status pls_world_prepare(pls_world *world)
     PLS_TRY(pls_neighbours_refresh(world));
     PLS_TRY(pls_choose_step(world));
     stand_still(&world->bodies);
-    PLS_TRY(sweep_world(world, 0.0, world->time, false));
+    bool begun;
+    PLS_TRY(pls_sweep(world, 0.0, world->step, &begun));
     PLS_TRY(pls_guard_overlap(world));
     remember_loads(&world->bodies);
     world->prepared = true;

@@ -233,13 +233,14 @@ static inline void fetch_slots(const pls_pair_list *list, size_t row)
         for (int k = 0; k < PLS_NEAR_STRIDE; ++k) __builtin_prefetch(list->slot + (size_t)entry[k] * PLS_SLOT);
 }
 
-static inline void gather_walls(const pls_pair_list *list, size_t row, pls_row *sum)
+static inline pls_row gather_walls(const pls_pair_list *list, size_t row, pls_row sum)
 {
     for (uint32_t k = list->walls.start[row]; k < list->walls.start[row + 1]; ++k)
     {
         uint32_t entry = list->walls.entry[k];
-        if (pls_pair_touches(list, entry >> 1)) *sum = pls_row_add(*sum, pls_row_load(pls_wall_slot(list, entry >> 1) + (entry & 1) * 8));
+        if (pls_pair_touches(list, entry >> 1)) sum = pls_row_add(sum, pls_row_load(pls_wall_slot(list, entry >> 1) + (entry & 1) * 8));
     }
+    return sum;
 }
 
 /// Velocities of the end from the sums of the contacts' slots and body forces; what contacts took is booked, half to either body.
@@ -273,17 +274,19 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
                                                               const double *force, const double *torque, int skewed, bool go_on,
                                                               pls_drift_report *report)
 {
+    const bool fetch = bodies->count > PLS_VAST_WORLD; // elsewhere they have not gone far
     drift_sums sums = {0};
     for (size_t row = first; row < last; row += PLS_W)
     {
         group g = {.bodies = bodies, .first = row, .count = last - row < PLS_W ? (int)(last - row) : PLS_W};
         pls_row sum[PLS_W];
+        const bool walls = list->walls.start[row] != list->walls.start[row + (size_t)g.count]; // most vectors of bodies lie inside
         for (int lane = 0; lane < PLS_W; ++lane)
         {
             size_t k = row_of(&g, lane);
-            if (row + SLOTS_AHEAD + PLS_W <= last) fetch_slots(list, row + SLOTS_AHEAD + (size_t)lane);
+            if (fetch && row + SLOTS_AHEAD + PLS_W <= last) fetch_slots(list, row + SLOTS_AHEAD + (size_t)lane);
             sum[lane] = gather_pairs(list, k, skewed);
-            gather_walls(list, k, &sum[lane]);
+            if (walls) sum[lane] = gather_walls(list, k, sum[lane]);
             if (force)
                 sum[lane] =
                     pls_row_add(sum[lane], pls_row_join(pls_v4_load(force + 4 * (k - first)), pls_v4_load(torque + 4 * (k - first))));

@@ -122,6 +122,7 @@ void pls_world_destroy(pls_world *world)
     pls_release(&world->state_rate);
     pls_release(&world->binding);
     pls_parted_free(world);
+    pls_release(&world->left);
     pls_release(&world->work);
     pls_release(&world->special);
     pls_release(&world);
@@ -632,6 +633,8 @@ size_t pls_world_contact_count(const pls_world *world)
     for (size_t k = 0; k < world->records.count; ++k) solid += world->records.entry[k].touches == PLS_SOLID_TOUCHES;
     return world->memory.count + solid;
 }
+
+pls_narrow_counts pls_world_narrow_counts(const pls_world *world) { return world->solids.counts; }
 
 const uint32_t *pls_world_rows_by_number(const pls_world *world, size_t *count)
 {

@@ -81,6 +81,14 @@ typedef struct pls_parted_list
     size_t count, capacity;
 } pls_parted_list;
 
+/// What is left of a thread's share of a step. A cache line each.
+typedef struct pls_share_left
+{
+    _Alignas(64) uint64_t blocks; ///< of pairs that nobody has taken yet: first << 32 | one behind the last
+    size_t first_group;           ///< where its groups that wait are listed
+    size_t waiting, taken;        ///< such groups; those that somebody has taken to finish
+} pls_share_left;
+
 struct pls_world
 {
     pls_world_def def;
@@ -111,6 +119,7 @@ struct pls_world
     bool memory_holds;         ///< `memory` and `records`, not the lists, have the contacts (between a change of bodies and the next list)
     pls_contact_work *work;    ///< one per thread
     pls_parted_list *parted;   ///< contacts that ended in this step, one list per thread
+    pls_share_left *left;      ///< one per thread
     int work_count;
     pls_skin_tuner tuner;
     pls_special *special;
@@ -146,6 +155,8 @@ pls_status pls_states_apply(pls_world *world);
 void pls_neighbours_moved(pls_world *world, double largest_square);
 /// Note by how much [m] a body, at most, went further in this step than was noted.
 void pls_neighbours_carried(pls_world *world, double further);
+/// Nobody has moved so far that the list would have to be looked at.
+bool pls_neighbours_hold(const pls_world *world);
 pls_status pls_neighbours_refresh(pls_world *world);
 /// Move what contacts remember out of the list, before bodies, laws or rows change.
 pls_status pls_neighbours_detach(pls_world *world);

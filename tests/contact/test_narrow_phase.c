@@ -26,8 +26,8 @@ static void every_pair(int dimension)
             if (plane && a == b) continue;
             const bool slow = is_slow(narrow_name(dimension, a)) || is_slow(narrow_name(dimension, b));
             narrow_tally t = {0};
-            narrow_random(dimension, a, b, slow ? 20 : 100, 3, &t);
-            narrow_tumble(dimension, a, b, 2, slow ? 60 : 200, slow ? 6 : 10, 4, &t);
+            narrow_random(dimension, a, b, slow ? 20 : 100, 1, 3, &t);
+            narrow_tumble(dimension, a, b, 2, slow ? 60 : 200, slow ? 6 : 10, 1, 4, &t);
             if (t.wrong || t.not_finite || t.counts.failures)
                 fail_msg("%s - %s in %dD: %llu of %llu wrong, by up to %.2e, %llu not finite, %llu failures", narrow_name(dimension, a),
                          narrow_name(dimension, b), dimension, (unsigned long long)t.wrong, (unsigned long long)t.checked, t.depth,

@@ -2,7 +2,7 @@
 # The long verification campaign: writes docs/verification.md and docs/figures/verify-*.svg, then docs/contact-detection.md (contact_methods.sh). Builds nothing.
 #
 #     tests/prove/prove.sh [build folder]        build/release by default
-#     PARTICLS_NARROW                            random pairs, trajectories, steps, one of how many is compared, for each pair of shapes
+#     PARTICLS_NARROW                            random pairs, trajectories, steps, one of how many is compared, one of how many of those is searched, for each pair of shapes
 #     PARTICLS_KILLS                             runs to kill on each scene, 50 by default
 #
 # Exit status 1 when a comparison is out of tolerance or bits differ; the page is written all the same.
@@ -30,8 +30,8 @@ OMP_WAIT_POLICY=passive "$program" "$scratch" >"$scratch/tables.md" || status=$?
 [ "$status" -le 1 ] || { echo "prove.sh: $program failed" >&2; exit "$status"; }
 known=$SECONDS
 
-# The narrow phase against slow oracles: hours with PARTICLS_NARROW="100000 200 400 1".
-"$build/tests/prove/prove_narrow" ${PARTICLS_NARROW:-2000 20 400 5} >"$scratch/narrow.md" || status=1
+# The narrow phase against slow oracles: hours with PARTICLS_NARROW="100000 200 400 1 1".
+"$build/tests/prove/prove_narrow" ${PARTICLS_NARROW:-2000 20 400 5 5} >"$scratch/narrow.md" || status=1
 
 # The example as users run it, against another program.
 "$particls" run "$root/examples/uniaxial-compression/scene.yaml" -o "$scratch/compression" --quiet --threads 1
@@ -119,7 +119,7 @@ TEXT
 ## Depths of pairs of shapes
 
 Every pair of shapes at random and along tumbling trajectories, from gaps of 5 % of the size to overlaps of 5 % (\`tests/support/narrow_oracle.c\`). Lengths are parts of the smaller
-bounding radius. *depth*: worst error, that of the overlap along the normal found, or by how much another direction has less, over separating axes (polytopes), bounds from both sides (gaps) or a search;
+bounding radius. *depth*: worst error, that of the overlap along the normal found, or by how much another direction has less, over separating axes (polytopes), bounds from both sides (gaps; overlaps where a ball about a witness point lies in the other body) or a search (*searched*);
 *of depth*: the same as part of the depth itself, of depths from 1e-6; *normal*: distance from the oracle's, where both are the same minimum; *points*: distance of the witness points
 from their surfaces; *wrong*: errors above 1e-8 (polytopes) or 1e-6 (others). Iterations, restarts (cold), fallbacks (to a slower method) and time per query are those of trajectories.
 TEXT

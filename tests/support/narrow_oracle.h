@@ -3,6 +3,7 @@
 // With F(n) = h_A(n) + h_B(-n) the depth is the least F. Whatever n an answer gives, F(n) is an upper bound of it; what is left to show is that no other n has less.
 //   overlapping polytopes   all normals of faces and all products of edges whose normals meet (separating axes): exact
 //   a gap, also of cores    two points of the bodies a distance apart along n, and F(n) = minus that distance: bounds from both sides, so a proof
+//   overlaps, mostly        a ball about the point of one body that lies in the other: F is no less than its radius along any n. A proof as well, but without the oracle's own normal
 //   all else                F over dense directions, the best of them and the answer's own n refined by polling ever smaller rings, turned at random
 // Support functions here are the oracle's own: all vertices tried, or closed forms.
 #ifndef PLS_TESTS_NARROW_ORACLE_H
@@ -16,6 +17,7 @@ enum { NARROW_SHAPES_3D = 11, NARROW_SHAPES_2D = 7, NARROW_MOST_SHAPES = 11 };
 typedef struct narrow_tally
 {
     uint64_t checked;
+    uint64_t searched;     ///< of these, where the oracle looked for less
     double depth;          ///< worst error: |delta - F(n)|, or delta less the least F found
     double depth_relative; ///< the same as part of the depth or distance, of those above 1e-6
     double normal;         ///< worst distance of the normal from the oracle's, where that is the same minimum
@@ -33,9 +35,9 @@ void narrow_free_shapes(void);
 /// Error of depths allowed for a pair: 1e-8 for polytopes, 1e-6 for others.
 double narrow_allowed(int dimension, int a, int b);
 
-/// Random poses, half of them overlapping, by 1e-6 to 5 % of the size; nothing known beforehand. `every`: of how many one is searched.
-void narrow_random(int dimension, int a, int b, int pairs, uint64_t seed, narrow_tally *tally);
+/// Random poses, half of them overlapping, by 1e-6 to 5 % of the size; nothing known beforehand. `searched`: of how many one is searched also where a ball proves it.
+void narrow_random(int dimension, int a, int b, int pairs, int searched, uint64_t seed, narrow_tally *tally);
 /// Tumbling trajectories through gaps and overlaps up to 5 %, warm; one step of `every` is compared.
-void narrow_tumble(int dimension, int a, int b, int trajectories, int steps, int every, uint64_t seed, narrow_tally *tally);
+void narrow_tumble(int dimension, int a, int b, int trajectories, int steps, int every, int searched, uint64_t seed, narrow_tally *tally);
 
 #endif
