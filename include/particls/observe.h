@@ -26,7 +26,8 @@ enum {
     PLS_MEASURE_COORDINATION = 8, ///< contacts per body, touching contacts
     PLS_MEASURE_ENERGY = 16,      ///< energies by kind [J]
     PLS_MEASURE_MOMENTUM = 32,    ///< linear and angular momentum
-    PLS_MEASURE_POROSITY = 64     ///< 1 - solid volume / volume
+    PLS_MEASURE_POROSITY = 64,    ///< 1 - solid volume / volume
+    PLS_MEASURE_MASS = 128        ///< number and mass of the bodies [kg]
 };
 
 typedef enum pls_volume_kind {
@@ -59,6 +60,8 @@ typedef struct pls_collection
     double energy_kinetic, energy_rotation, energy_normal, energy_shear, energy_potential, energy_damped, energy_slid; ///< [J]
     pls_vec3 momentum, angular_momentum;
     double porosity;
+    uint64_t bodies; ///< bounded ones
+    double mass;     ///< of those that have one: fixed and driven bodies have none [kg]
 } pls_collection;
 
 pls_collection_def pls_default_collection_def(void);
@@ -69,7 +72,7 @@ pls_status pls_measure_collection(const pls_world *world, const pls_collection_d
 /// "angular_velocity", "force", "torque", "scale", ...) of each body.
 typedef struct pls_particle_def
 {
-    char group[PLS_NAME_SIZE]; ///< its entry's name; every body of the group is tracked
+    char group[PLS_NAME_SIZE]; ///< its entry's name, "" or "all": all; every body of the group is tracked
     int quantity_count;
     char quantities[16][PLS_NAME_SIZE];
 } pls_particle_def;

@@ -19,11 +19,10 @@ typedef struct pls_near_pairs
     size_t count, capacity;
 } pls_near_pairs;
 
-/// Whether a force between two bodies may matter: not where none moves either and nobody asks for it.
+/// Whether a force between two bodies may matter: not where neither can be moved by one (fixed, driven along all axes, walls).
 static inline bool pls_pair_matters(const pls_bodies *bodies, uint32_t a, uint32_t b)
 {
-    return bodies->load[a].inv_mass != 0.0 || bodies->load[b].inv_mass != 0.0 ||
-           ((bodies->kind[a].flags | bodies->kind[b].flags) & PLS_BODY_SPECIAL);
+    return bodies->load[a].inv_mass != 0.0 || bodies->load[b].inv_mass != 0.0;
 }
 
 /// Pairs with |X_j - X_i| < r_i + r_j + gap that matter. LIMIT_EXCEEDED where a periodic edge is shorter than 4 r_max + 2 gap.

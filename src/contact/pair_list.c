@@ -102,8 +102,7 @@ static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const 
             double height = n.x * (p->x - w->x) + n.y * (p->y - w->y) + n.z * (p->z - w->z);
             if (bodies->kind[row].flags & (PLS_BODY_UNBOUNDED | PLS_BODY_SOLID)) continue;
             if (!(height < p->radius + gap) && !pls_is_kept_at_wall(kept, wall, row)) continue;
-            if (bodies->load[row].inv_mass == 0.0 && bodies->load[wall].inv_mass == 0.0 && !(bodies->kind[row].flags & PLS_BODY_SPECIAL))
-                continue;
+            if (!pls_pair_matters(bodies, (uint32_t)row, wall)) continue;
             uint16_t its = pls_law_table_find(laws, bodies->kind[row].material, bodies->kind[wall].material);
             if (its == PLS_NO_LAW) return missing_law(bodies, laws, (uint32_t)row, wall);
             if (its != law) continue;

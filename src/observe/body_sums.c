@@ -20,6 +20,7 @@ static pls_body_sums nothing(void)
 static void combine(pls_body_sums *to, const pls_body_sums *from)
 {
     to->bounded += from->bounded;
+    to->mass += from->mass;
     to->kinetic += from->kinetic;
     to->rotation += from->rotation;
     to->potential += from->potential;
@@ -57,6 +58,7 @@ static void add_motion(const pls_selection *selection, uint32_t row, pls_body_su
     pls_vec3 w = pls_rotate_back(q, pls_vec(spin->wx, spin->wy, spin->wz));
     pls_vec3 spin_momentum = pls_vec(mass->ix * w.x, mass->iy * w.y, mass->iz * w.z);
 
+    sums->mass += mass->mass;
     sums->kinetic += pls_dot(momentum, velocity) / 2;
     sums->rotation += pls_dot(spin_momentum, w) / 2;
     sums->potential += pls_surroundings_potential(&selection->around, row);

@@ -10,7 +10,7 @@ pls_collection_def pls_default_collection_def(void)
 {
     return (pls_collection_def){
         .quantities = PLS_MEASURE_STRESS | PLS_MEASURE_TANGENT | PLS_MEASURE_FABRIC | PLS_MEASURE_COORDINATION | PLS_MEASURE_ENERGY |
-                      PLS_MEASURE_MOMENTUM | PLS_MEASURE_POROSITY,
+                      PLS_MEASURE_MOMENTUM | PLS_MEASURE_POROSITY | PLS_MEASURE_MASS,
         .volume_kind = PLS_VOLUME_BOUNDING_BOX,
         .include_walls = true,
     };
@@ -66,6 +66,11 @@ static void report_bodies(const pls_body_sums *sums, unsigned quantities, pls_co
         out->angular_momentum = pls_vec(sums->angular_momentum[0], sums->angular_momentum[1], sums->angular_momentum[2]);
     }
     if (quantities & PLS_MEASURE_POROSITY) out->porosity = out->volume > 0 ? 1 - sums->solid / out->volume : 0;
+    if (quantities & PLS_MEASURE_MASS)
+    {
+        out->bodies = (uint64_t)sums->bounded;
+        out->mass = sums->mass;
+    }
 }
 
 static pls_status measure_contacts(const pls_world *world, const pls_selection *selection, unsigned quantities, pls_contact_sums *sums)

@@ -93,6 +93,11 @@ static void each_column(column_sink *sink, const pls_collection *c, unsigned qua
     if (quantities & PLS_MEASURE_ENERGY) put_energies(sink, c);
     if (quantities & PLS_MEASURE_MOMENTUM) put_momentum(sink, c, dimension);
     if (quantities & PLS_MEASURE_POROSITY) put(sink, "porosity", "", "", c->porosity);
+    if (quantities & PLS_MEASURE_MASS)
+    {
+        put(sink, "bodies", "", "", (double)c->bodies);
+        put(sink, "mass", "", "kg", c->mass);
+    }
     put(sink, "volume", "", "m^3", c->volume);
 }
 

@@ -31,6 +31,7 @@ bool pls_selection_has_contact(const pls_selection *selection, const pls_contact
 typedef struct pls_body_sums
 {
     double bounded;                      ///< number of bounded bodies
+    double mass;                         ///< of bounded bodies with mass [kg]
     double kinetic, rotation, potential; ///< of bodies with mass [J]
     double damped, slid;                 ///< the bodies' halves of what their contacts dissipated [J]
     double momentum[3];                  ///< [kg m/s]

@@ -106,10 +106,10 @@ static pls_status parse_schedule(const pls_node *node, pls_schedule *schedule)
     return PLS_OK;
 }
 
-static pls_status check_group(const pls_scene *scene, const pls_node *group, bool all)
+static pls_status check_group(const pls_scene *scene, const pls_node *group)
 {
     int index;
-    if (all && strcmp(group->text, "all") == 0) return PLS_OK;
+    if (strcmp(group->text, "all") == 0) return PLS_OK;
     return pls_scene_need_body(scene, group, &index);
 }
 
@@ -119,15 +119,15 @@ static pls_status parse_collection(const pls_scene *scene, const pls_node *node,
     {
         const char *name;
         unsigned bit;
-    } kinds[] = {{"stress", PLS_MEASURE_STRESS},    {"tangent", PLS_MEASURE_TANGENT},
-                 {"fabric", PLS_MEASURE_FABRIC},    {"coordination", PLS_MEASURE_COORDINATION},
-                 {"energy", PLS_MEASURE_ENERGY},    {"momentum", PLS_MEASURE_MOMENTUM},
-                 {"porosity", PLS_MEASURE_POROSITY}};
+    } kinds[] = {{"stress", PLS_MEASURE_STRESS},     {"tangent", PLS_MEASURE_TANGENT},
+                 {"fabric", PLS_MEASURE_FABRIC},     {"coordination", PLS_MEASURE_COORDINATION},
+                 {"energy", PLS_MEASURE_ENERGY},     {"momentum", PLS_MEASURE_MOMENTUM},
+                 {"porosity", PLS_MEASURE_POROSITY}, {"mass", PLS_MEASURE_MASS}};
     pls_collection_def *collection = &def->collection;
     *collection = (pls_collection_def){.include_walls = pls_scene_boolean(node, "walls", true)};
     const pls_node *group = pls_node_get(node, "collection"), *quantities = pls_node_get(node, "quantities"),
                    *volume = pls_node_get(node, "volume");
-    PLS_TRY(check_group(scene, group, true));
+    PLS_TRY(check_group(scene, group));
     snprintf(collection->group, sizeof collection->group, "%s", group->text);
     for (size_t k = 0; k < quantities->count; ++k)
     {
@@ -190,7 +190,7 @@ static pls_status parse_own(const pls_scene *scene, const pls_node *node, pls_ob
     const pls_observer_ops *ops = pls_scene_named_operations(&scene->observer_ops, node, &map);
     const pls_node *group = pls_node_get(map, "bodies");
     *name = ops->name;
-    PLS_TRY(check_group(scene, group, true));
+    PLS_TRY(check_group(scene, group));
     def->own = (pls_own_def){.ops = ops, .given = true};
     snprintf(def->own.group, sizeof def->own.group, "%s", group->text);
     pls_scene_parameters(ops->parameters, map, def->own.values);
@@ -219,7 +219,7 @@ static pls_status parse_kind(const pls_scene *scene, const pls_node *node, pls_o
     {
         def->kind = PLS_OBSERVE_PARTICLE;
         *name = particle->text;
-        PLS_TRY(check_group(scene, particle, false));
+        PLS_TRY(check_group(scene, particle));
         snprintf(def->particle.group, sizeof def->particle.group, "%s", particle->text);
         return parse_fields(pls_node_get(node, "quantities"), "quantities", def->particle.quantities, &def->particle.quantity_count);
     }

@@ -256,7 +256,7 @@ static const pls_key keys[] = {
      "stop when an overlap, of two bodies or with a wall, exceeds this fraction of the smaller radius (at a wall: the body's)"},
 
     {"observe_collection", "collection", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a body entry, or all"},
-    {"observe_collection", "quantities", PLS_KEY_WORDS, 0, 0, "stress|tangent|fabric|coordination|energy|momentum|porosity", NULL, "",
+    {"observe_collection", "quantities", PLS_KEY_WORDS, 0, 0, "stress|tangent|fabric|coordination|energy|momentum|porosity|mass", NULL, "",
      "stress coordination energy", ANY, "what is measured"},
     {"observe_collection", "volume", PLS_KEY_NUMBER, OPEN, 0, "bounding_box|periodic", "volume", "m^3", "bounding_box", POSITIVE,
      "volume of the average; {box: ...} also picks the bodies and contacts inside"},
@@ -264,7 +264,7 @@ static const pls_key keys[] = {
      "count contacts with unbounded bodies in stress, tangent and fabric"},
     SCHEDULE("observe_collection"),
     {"observe_particle", "particle", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY,
-     "name of a body entry; each of its bodies has its columns"},
+     "name of a body entry, or all; each of its bodies has its columns"},
     {"observe_particle", "quantities", PLS_KEY_NAMES, 0, 0, NULL, NULL, "", "position velocity force", ANY, "body fields"},
     SCHEDULE("observe_particle"),
     {"observe_frames", "frames", PLS_KEY_WORD, REQUIRED, 0, "vtk", NULL, "", NULL, ANY, "file format"},

@@ -34,12 +34,26 @@ carry_out impact two-spheres
 carry_out head-on two-spheres --set vars.w=0
 carry_out growth dilating-sphere
 carry_out cooling temperature-stiffness
+carry_out polygons polygons
+carry_out polyhedra polyhedra
+# Prisms of height 1 whose middles are at z = 0 are the polygons, which are 1 thick.
+tall=()
+for stone in red a b c d e f g h; do tall+=(--set "shapes.$stone.prism.height=1"); done
+carry_out prisms polyhedra --set vars.stand=0 --set bodies[red].velocity=[0.25,0.24,0] "${tall[@]}"
+carry_out flat polygons --set contact[0].faces=manifold
+# Some grains of the hopper and of the heaps, on a smaller bed.
+carry_out hopper hopper --set bodies[grains].place.lattice.count=[3,3,6] --set bodies[grains].place.lattice.corner=[-0.02565,-0.02565,0.03] \
+    --set vars.open=0.15 --set time.end=0.45 --set observe[2].every=0.05
+carry_out heaps sand-pile --set bodies[balls].place.lattice.count=[3,3,8] --set bodies[balls].place.lattice.corner=[-0.21875,-0.01875,0.005] \
+    --set bodies[stones].place.lattice.count=[3,3,8] --set bodies[stones].place.lattice.corner=[0.1757,-0.0243,0.005] \
+    --set bodies[bed].place.hex_pack.count=[64,16,1] --set bodies[bed].place.hex_pack.corner=[-0.32,-0.07,-0.01] \
+    --set vars.lift=0.2 --set vars.speed=0.3 --set time.end=0.75 --set time.dt=2e-4
 
 "$PARTICLS" check "$PARTICLS_SOURCE/examples/uniaxial-compression/scene.yaml" --no-timing --set time.dt=3e-5 >check.txt || complain "check of the compression fails"
 grep -q "That is a bound from single bodies" check.txt || complain "check does not say why it accepts a step above its bound"
 
 python3 - <<'PYTHON' || failures=$((failures + 1))
-import csv, json, math
+import csv, json, math, os, re
 
 def series(path):
     rows = list(csv.reader(open(path)))
@@ -84,6 +98,82 @@ weight = 9.81 * 1000 * 4 / 3 * math.pi * 0.05**3
 for row in series("cooling/series/ball.csv"):
     warmth = math.exp(-row["time"] / 1.5)
     if row["time"] > 2: near("overlap", (0.05 - row["position_z"]) * (2e4 - 1.8e4 * warmth) / weight, 1, 1e-3)
+
+# Polygons and prisms: nothing outside acts on them, and friction and dashpots get what motion loses. The mass comes from the shoelace formula.
+def corners(example, name):
+    scene = open(os.path.join(os.environ["PARTICLS_SOURCE"], "examples", example, "scene.yaml")).read()
+    points = re.search(rf"^  {name}: .*points: \[(\[.*\])\]", scene, re.M).group(1)
+    points = [tuple(map(float, point.split(","))) for point in re.findall(r"\[([^][]*)\]", points)]
+    return points if area(points)[0] > 0 else points[::-1]
+
+def area(points):
+    double = [a[0] * b[1] - a[1] * b[0] for a, b in zip(points, points[1:] + points[:1])]
+    middle = [sum((a[k] + b[k]) * w for a, b, w in zip(points, points[1:] + points[:1], double)) / sum(double) / 3 for k in range(2)]
+    return sum(double) / 2, middle
+
+for example, height, bound in (("polygons", 1, 2e-5), ("polyhedra", 0.25, 2e-4)):
+    rows = series(f"{example}/series/sums.csv")
+    mass = area(corners(example, "red"))[0] * height
+    near(f"momentum of {example}", rows[0]["momentum_x"], 0.25 * mass, 1e-12)
+    for row in rows:
+        for name in row:
+            if "momentum" in name: near(f"{name} of {example}", row[name], rows[0][name], 1e-12)
+        near(f"energy of {example}", row["energy_total"] / rows[0]["energy_total"], 1, bound)
+    assert rows[-1]["energy_damped"] > 0 and rows[-1]["energy_slid"] > 0
+
+names = ["red", *"abcdefgh"]
+outline = [(corners("polygons", name), area(corners("polygons", name))[1]) for name in names]
+def placed(row, k):
+    angle = 2 * math.atan2(row[f"{k}.orientation_z"], row[f"{k}.orientation_w"])
+    points, middle = outline[k]
+    turned = [(math.cos(angle) * (x - middle[0]) - math.sin(angle) * (y - middle[1]),
+               math.sin(angle) * (x - middle[0]) + math.cos(angle) * (y - middle[1])) for x, y in points]
+    return [(x + row[f"{k}.position_x"], y + row[f"{k}.position_y"]) for x, y in turned]
+
+def depth_along_edges(A, B):
+    """The least depth of B under the edges of A: convex shapes that overlap have it positive for both."""
+    least = math.inf
+    for p, q in zip(A, A[1:] + A[:1]):
+        normal = ((q[1] - p[1]) / math.dist(p, q), (p[0] - q[0]) / math.dist(p, q))
+        least = min(least, max(normal[0] * (p[0] - b[0]) + normal[1] * (p[1] - b[1]) for b in B))
+    return least
+
+for row in series("polygons/series/places.csv"):
+    outlines = [placed(row, k) for k in range(9)]
+    for k, A in enumerate(outlines):
+        for B in outlines[:k]:
+            overlap = min(depth_along_edges(A, B), depth_along_edges(B, A))
+            assert overlap < 5e-4, f"polygons overlap by {overlap} at t = {row['time']}"
+for flat, prism in zip(series("flat/series/places.csv"), series("prisms/series/places.csv")):
+    for k in range(9):
+        for axis in "xy": near(f"place of prism {k}", prism[f"{k}.position_{axis}"], flat[f"{k}.position_{axis}"], 1e-4)
+        near(f"height of prism {k}", prism[f"{k}.position_z"], 0, 1e-4)
+
+# Hopper: grains are above the opening, within the funnel, or below it, within the tray; mass is neither lost nor gained, and no energy comes up when nothing is driven any more.
+for row, out in zip(series("hopper/series/grains.csv"), series("hopper/series/discharged.csv")[::5]):
+    places = [[row[f"{k}.position_{axis}"] for axis in "xyz"] for k in range(54)]
+    near("time", out["time"], row["time"], 1e-9)
+    assert sum(z < 0 for x, y, z in places) == out["bodies"], f"bodies below the opening at t = {row['time']}"
+    for x, y, z in places:
+        if z > 0: assert math.hypot(x, y) < min(0.035 + z, 0.095), f"a grain is outside the funnel at t = {row['time']}"
+        else: assert abs(x) < 0.12 and abs(y) < 0.12 and z > -0.15, f"a grain is outside the tray at t = {row['time']}"
+assert out["bodies"] > 50, "the grains do not flow out"
+near("mean mass of a grain", out["mass"] / out["bodies"] / (2500 * math.pi / 6 * 1e-6), 1, 5e-3)
+later = [row for row in series("hopper/series/all.csv") if row["time"] > 0.27]
+taken = later[-1]["energy_damped"] + later[-1]["energy_slid"] - later[0]["energy_damped"] - later[0]["energy_slid"]
+assert taken > 0.05
+near("energy after the gate has stopped", later[-1]["energy_total"], later[0]["energy_total"], 0.02 * taken)
+
+# Heaps: cones of mean height h/4 and mean radius R/2; stones are steeper than balls; nothing falls through the bed or is lost.
+slope = {}
+for heap in ("balls", "stones"):
+    rows = series(f"heaps/series/{heap}.csv")
+    for row in rows: assert all(row[f"{k}.position_z"] > -0.0055 for k in range(72)), f"{heap} fall through the ground"
+    places = [[rows[-1][f"{k}.position_{axis}"] for axis in "xyz"] for k in range(72)]
+    middle = [sum(place[axis] for place in places) / 72 for axis in range(2)]
+    distance = sum(math.hypot(x - middle[0], y - middle[1]) for x, y, z in places)
+    slope[heap] = math.degrees(math.atan(2 * sum(z for x, y, z in places) / distance))
+assert 8 < slope["balls"] < 20 and slope["balls"] + 3 < slope["stones"] < 35, slope
 PYTHON
 
 [ $failures -eq 0 ] || exit 1

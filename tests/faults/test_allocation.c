@@ -122,7 +122,7 @@ static pls_status look(pls_world *world)
     pls_step_estimate estimate;
     uint64_t hash;
     def.quantities = PLS_MEASURE_STRESS | PLS_MEASURE_TANGENT | PLS_MEASURE_FABRIC | PLS_MEASURE_COORDINATION | PLS_MEASURE_ENERGY |
-                     PLS_MEASURE_MOMENTUM | PLS_MEASURE_POROSITY;
+                     PLS_MEASURE_MOMENTUM | PLS_MEASURE_POROSITY | PLS_MEASURE_MASS;
     PLS_TRY(pls_measure_collection(world, &def, &collection));
     PLS_TRY(pls_world_get_figures(world, &figures));
     PLS_TRY(pls_world_stable_step(world, &estimate));

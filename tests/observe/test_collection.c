@@ -84,6 +84,8 @@ static void a_flying_spinning_ball_has_its_textbook_energy_and_momentum(void **s
     done(pls_measure_collection(l.world, &def, &c));
     const double mass = 3 * 4.0 / 3 * pi * 0.008;
     const double inertia = 0.4 * mass * 0.04;
+    assert_int_equal(c.bodies, 1);
+    expect_near(c.mass, mass, 1e-15);
     expect_near(c.energy_kinetic, 0.5 * mass * 169, 1e-13);
     expect_near(c.energy_rotation, 0.5 * inertia * 9, 1e-15);
     expect_near(c.energy_potential, mass * 9.81 * 3, 1e-13);
@@ -143,6 +145,8 @@ static void a_periodic_cubic_lattice_has_the_porosity_one_minus_pi_over_six(void
         def.upper = pls_add(corner[k], pls_vec(2, 1, 3));
         done(pls_measure_collection(l.world, &def, &c));
         expect_near(c.volume, 6, 1e-12);
+        assert_int_equal(c.bodies, 6); // of 64, those with their centre inside
+        expect_near(c.mass, 6 * 1000 * 4 * pi / 3 * 0.4999 * 0.4999 * 0.4999, 1e-9);
         expect_near(c.porosity, expected, 1e-3);
     }
     pls_world_destroy(l.world);

@@ -5,6 +5,8 @@
 
 #include <stdlib.h>
 
+static const double pi = 3.14159265358979323846;
+
 static size_t column_of(const pls_series *series, const char *name)
 {
     for (size_t k = 0; k < series->column_count; ++k)
@@ -25,7 +27,7 @@ static void a_collection_series_has_all_components_under_their_names(void **stat
     def.volume = 1.94;
     pls_series series;
     done(pls_series_collection(l.world, &def, &series));
-    assert_int_equal(series.column_count, 9 + 81 + 9 + 2 + 8 + 6 + 1 + 1);
+    assert_int_equal(series.column_count, 9 + 81 + 9 + 2 + 8 + 6 + 1 + 2 + 1);
     assert_string_equal(series.columns[0].name, "sigma_xx");
     assert_string_equal(series.columns[0].unit, "Pa");
     assert_string_equal(series.columns[8].name, "sigma_zz");
@@ -43,6 +45,8 @@ static void a_collection_series_has_all_components_under_their_names(void **stat
     expect_near(values[column_of(&series, "energy_total")], energy, 1e-12);
     expect_near(values[column_of(&series, "momentum_z")], 0, 0);
     expect_near(values[column_of(&series, "angular_momentum_x")], 0, 0);
+    expect_near(values[column_of(&series, "bodies")], 2, 0);
+    expect_near(values[column_of(&series, "mass")], 2 * 1000 * pi / 6, 1e-9);
     expect_near(values[column_of(&series, "volume")], 1.94, 0);
     free(values);
     pls_series_free(&series);
@@ -60,7 +64,7 @@ static void a_collection_series_in_2d_leaves_out_what_does_not_exist(void **stat
     pls_collection_def def = pls_default_collection_def();
     pls_series series;
     done(pls_series_collection(l.world, &def, &series));
-    assert_int_equal(series.column_count, 4 + 16 + 4 + 2 + 8 + 3 + 1 + 1);
+    assert_int_equal(series.column_count, 4 + 16 + 4 + 2 + 8 + 3 + 1 + 2 + 1);
     const char *const names[5] = {"sigma_xx", "sigma_xy", "sigma_yx", "sigma_yy", "D_xxxx"};
     for (size_t k = 0; k < 5; ++k) assert_string_equal(series.columns[k].name, names[k]);
     column_of(&series, "angular_momentum_z");
@@ -113,6 +117,11 @@ static void several_tracked_bodies_are_numbered_within_their_group(void **state)
     done(series.values(series.context, l.world, values));
     expect_near(values[0], column_radius, 0);
     expect_near(values[6], 1, 0);
+    pls_series_free(&series);
+
+    strcpy(def.group, "all"); // of all entries, in the order in which they were added
+    done(pls_series_particle(l.world, &def, &series));
+    assert_int_equal(series.column_count, 5 * pls_world_body_count(l.world));
     pls_series_free(&series);
     pls_world_destroy(l.world);
 }

@@ -93,9 +93,62 @@ static void a_law_that_stiffens_is_noticed_within_64_steps(void **state)
     pls_world_destroy(world);
 }
 
+static const pls_shape_ops *builtin_shape(const char *name)
+{
+    const pls_shape_ops *const *ops = pls_builtin_shapes();
+    while (*ops && strcmp((*ops)->name, name) != 0) ++ops;
+    assert_non_null(*ops);
+    return *ops;
+}
+
+/// Away from the start along x at 1 m/s.
+static pls_status leaves(void *context, double time, pls_vec3 *velocity, pls_vec3 *angular_velocity)
+{
+    (void)context, (void)time;
+    *velocity = pls_vec(1.0, 0.0, 0.0);
+    *angular_velocity = pls_vec(0.0, 0.0, 0.0);
+    return PLS_OK;
+}
+
+/// A gate may be drawn through a wall: neither can be moved, so that they need no law and no overlap of theirs stops the run. A free body there still needs a law.
+static void what_no_force_can_move_passes_through_its_like(void **state)
+{
+    (void)state;
+    const double half_and_rounding[4] = {0.5, 0.5, 0.5, 0.0}, lets_go[1] = {0.0};
+    for (int other = 0; other < 3; ++other) // a fixed box, a plane, and a free box
+    {
+        pls_material_id grain, steel;
+        pls_world *world = row_of_spheres(0, 1e-3, &grain);
+        pls_material_def material = pls_default_material_def();
+        strcpy(material.name, "steel");
+        material.values.density = 1.0;
+        assert_int_equal(pls_world_add_material(world, &material, &steel), PLS_OK);
+        pls_shape_id box, wall;
+        assert_int_equal(pls_world_add_shape(world, "box", builtin_shape("box"), half_and_rounding, &box), PLS_OK);
+        assert_int_equal(pls_world_add_shape(world, "wall", builtin_shape("plane"), lets_go, &wall), PLS_OK);
+        pls_body_def gate = pls_default_body_def(), still = pls_default_body_def();
+        pls_body_id id;
+        gate.shape = box;
+        gate.material = steel;
+        gate.motion.axes = PLS_AXIS_ALL;
+        gate.motion.function = leaves;
+        assert_int_equal(pls_world_add_body(world, &gate, &id), PLS_OK);
+        still.shape = other == 1 ? wall : box;
+        still.material = steel;
+        still.position = pls_vec(1.5, 0.0, 0.0);
+        if (other == 0) still.motion.axes = PLS_AXIS_ALL;
+        assert_int_equal(pls_world_add_body(world, &still, &id), PLS_OK);
+        pls_status status = PLS_OK;
+        for (int step = 0; step < 1500 && status == PLS_OK; ++step) status = pls_step(world);
+        assert_int_equal(status, other == 2 ? PLS_NOT_FOUND : PLS_OK);
+        pls_world_destroy(world);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_step_that_makes_a_velocity_not_a_number_is_refused),
-                                       cmocka_unit_test(a_law_that_stiffens_is_noticed_within_64_steps)};
+                                       cmocka_unit_test(a_law_that_stiffens_is_noticed_within_64_steps),
+                                       cmocka_unit_test(what_no_force_can_move_passes_through_its_like)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
