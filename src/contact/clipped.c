@@ -127,6 +127,14 @@ void pls_clip(pls_clipped *c, const pls_half_space *h, uint8_t label)
     drop_vertices(c, old, depth);
 }
 
+/// Of the tetrahedron between the origin and three points: v/20 (sum of x (x) x + S (x) S), S their sum.
+static void add_second(double second[6], pls_vec3 x, double weight)
+{
+    const pls_vec3 w = pls_scale(x, weight);
+    second[0] += w.x * x.x, second[1] += w.y * x.y, second[2] += w.z * x.z;
+    second[3] += w.x * x.y, second[4] += w.x * x.z, second[5] += w.y * x.z;
+}
+
 /// Triangles from one corner of the face, tetrahedra from there to the origin.
 static void add_face(const pls_clipped *c, int start, uint8_t *seen, pls_clipped_measure *m)
 {
@@ -143,6 +151,8 @@ static void add_face(const pls_clipped *c, int start, uint8_t *seen, pls_clipped
         const double v = pls_dot(p, s) / 3.0;
         m->volume += v;
         m->first = pls_add(m->first, pls_scale(sum, 0.25 * v));
+        add_second(m->second, p, 0.05 * v), add_second(m->second, a, 0.05 * v), add_second(m->second, b, 0.05 * v);
+        add_second(m->second, sum, 0.05 * v);
         m->area[label] = pls_add(m->area[label], s);
         m->area_moment[label] = pls_add(m->area_moment[label], pls_scale(pls_cross(sum, s), 1.0 / 3.0));
         a = b;

@@ -22,6 +22,9 @@
 // moving the cores along the normal of the penetration depth is not conservative where that turns (rounded boxes in random collisions lose or gain some 1e-3 of their
 // energy, at worst several percent), while the integral over rounded edges has no closed form.
 // A half-space and a sphere or an ellipsoid: the cap in closed form. Other smooth pairs have no faces.
+//
+// All this is about the normal force. Friction and dashpots act over the same area and resist turning of one face on the other, about the normal and about axes in the
+// face; what solid_contact.c needs for that is the area's second moments (`spread`).
 
 #include "contact/faces.h"
 
@@ -231,6 +234,15 @@ static void put_on_line(const push *p, pls_vec3 middle, pls_vec3 *point, double 
     *twist = pls_dot(torque, p->force) / square;
 }
 
+/// Thickness is small, so that it does not matter that the moments are those of the body, not of its shadow.
+static void take_spread(const pls_clipped_measure *P, bool flat, double spread[6])
+{
+    const double V = P->volume;
+    const pls_vec3 c = pls_scale(P->first, 1.0 / V);
+    const double middle[6] = {c.x * c.x, c.y * c.y, c.z * c.z, c.x * c.y, c.x * c.z, c.y * c.z};
+    for (int k = 0; k < 6; ++k) spread[k] = flat && (k == 2 || k > 3) ? 0.0 : P->second[k] / V - middle[k];
+}
+
 /// Energy kn W / A0.
 static void volume_law(const push *w, const pls_clipped_measure *P, double A0, pls_touch *out)
 {
@@ -334,8 +346,51 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
         volume_law(&w, &m, options->face_area, out);
     else
         manifold_law(&w, &m, out);
+    take_spread(&m, a->shape->dimension == 2, out->spread);
     out->point = pls_add(origin, out->point);
     return isfinite(out->delta) && out->delta > 0.0;
+}
+
+/// Two axes at right angles to the normal, and the moments of the spread along them.
+static void spread_across(const pls_touch *t, pls_vec3 axis[2], double moment[3])
+{
+    const pls_vec3 n = t->normal;
+    const double *s = t->spread;
+    axis[0] = pls_unit(fabs(n.x) < fabs(n.y) ? pls_vec(0.0, n.z, -n.y) : pls_vec(-n.z, 0.0, n.x));
+    axis[1] = pls_cross(n, axis[0]);
+    pls_vec3 turned[2];
+    for (int k = 0; k < 2; ++k)
+    {
+        const pls_vec3 e = axis[k];
+        turned[k] =
+            pls_vec(s[0] * e.x + s[3] * e.y + s[4] * e.z, s[3] * e.x + s[1] * e.y + s[5] * e.z, s[4] * e.x + s[5] * e.y + s[2] * e.z);
+    }
+    moment[0] = pls_dot(axis[0], turned[0]), moment[1] = pls_dot(axis[1], turned[1]), moment[2] = pls_dot(axis[0], turned[1]);
+}
+
+static bool is_point(const pls_touch *t) { return t->spread[0] == 0.0 && t->spread[1] == 0.0 && t->spread[2] == 0.0; }
+
+double pls_touch_lever(const pls_touch *touch)
+{
+    static const double of_disc = 0.94280904158206336; ///< 2/3 of the radius over the radius of gyration
+    pls_vec3 axis[2];
+    double moment[3];
+    if (is_point(touch)) return 0.0;
+    spread_across(touch, axis, moment);
+    return of_disc * sqrt(fmax(moment[0] + moment[1], 0.0));
+}
+
+void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4])
+{
+    // Columns of the moments' Cholesky factor, times the root of two.
+    pls_vec3 axis[2];
+    double moment[3];
+    spread_across(touch, axis, moment);
+    const double first = sqrt(fmax(moment[0], 0.0)), shared = first > 0.0 ? moment[2] / first : 0.0;
+    const double second = sqrt(fmax(moment[1] - shared * shared, 0.0));
+    corner[0] = pls_scale(pls_add(pls_scale(axis[0], first), pls_scale(axis[1], shared)), M_SQRT2);
+    corner[2] = pls_scale(axis[1], M_SQRT2 * second);
+    corner[1] = pls_scale(corner[0], -1.0), corner[3] = pls_scale(corner[2], -1.0);
 }
 
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)

@@ -12,6 +12,17 @@ enum { PLS_MOST_FACES = 256 };
 /// False if the pair has no faces to speak of, always for the same pairs of shapes: the point law stands, and nothing is written.
 /// Faces have polyhedra, boxes, polygons and prisms of at most PLS_MOST_FACES faces, rounded ones only against walls: half-spaces, triangles, segments. For VOLUME on a
 /// half-space also sphere, disc, ellipsoid and ellipse.
+/// Gives the area of touch too (`spread`): that of the overlap, weighted by its thickness.
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out);
+
+/// Where two bodies touch over an area, force and point alone do not tell how they rub and damp when they turn on each other: these do.
+/// @{
+
+/// Radius at which all of the area's friction resists turning about the normal [m]; 0 for a point. Right for evenly pressed discs, whose mean distance from the middle
+/// it is (2/3 of their radius), and to half a percent for squares.
+double pls_touch_lever(const pls_touch *touch);
+/// Four points, a quarter of the area each, that have its second moments: from `touch->point`, opposite ones in turn.
+void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4]);
+/// @}
 
 #endif

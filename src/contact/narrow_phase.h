@@ -25,6 +25,7 @@ typedef struct pls_touch
     double energy_delta; ///< overlap at which a linear spring holds the energy of the contact; `delta` but for the volume law [m]
     double depth;        ///< penetration depth, for guards [m]
     double twist;        ///< couple about the normal that the laws of faces add, on B, by the normal force; on A the opposite; else 0 [m]
+    double spread[6]; ///< second moments of the area of touch about its middle, by the area: xx, yy, zz, xy, xz, yz; all 0: a point [m^2]
 } pls_touch;
 
 /// What queries cost, for summary.json. One per thread, added up.
