@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The benchmarks: measures the programs of this folder, LAMMPS beside them in turn, and writes docs/performance.md with its figures.
+# The benchmarks: measures the programs of this folder, LAMMPS, libccd and Yade beside them in turn, and writes docs/performance.md with its figures.
 #
 #     bench/bench.sh [build folder]      without a folder: build/release, built first
 #
@@ -19,10 +19,12 @@ skin=${LAMMPS_SKIN:-0.015}
 if [ "$quick" = 1 ]; then
     rounds=${ROUNDS:-1}
     results=$here/results/quick page=$results/performance.md figures=$results/figures
+    query_pairs=20 query_steps=10 settling=500 settling_steps=20 yade_grains=27 yade_steps=5
     end=0.05 large=200000 large_steps=20 threads_steps=500 scaling_work=8000000 sizes=(1000 10000 100000 1000000)
 else
     rounds=${ROUNDS:-3}
     results=$here/results page=$root/docs/performance.md figures=$root/docs/figures
+    query_pairs=500 query_steps=100 settling=4000 settling_steps=400 yade_grains=216 yade_steps=20
     end=0.5 large=1000000 large_steps=200 threads_steps=4000 scaling_work=36000000 sizes=(1000 3000 10000 30000 100000 300000 1000000)
 fi
 
@@ -30,7 +32,9 @@ build=${1:-$root/build/release}
 [ $# -gt 0 ] || make -C "$root" --no-print-directory build
 compression=$build/bench/compression
 broad_phase=$build/bench/broad_phase
-for program in "$compression" "$broad_phase"; do
+contact_query=$build/bench/contact_query
+polyhedra=$build/bench/polyhedra
+for program in "$compression" "$broad_phase" "$contact_query" "$polyhedra"; do
     [ -x "$program" ] || { echo "bench.sh: $program is missing: run make build first" >&2; exit 2; }
 done
 for tool in gnuplot python3; do
@@ -41,6 +45,12 @@ peer=1
 if ! command -v lmp >/dev/null; then
     "$root/scripts/install-packages" lammps || echo "bench.sh: installing lammps failed" >&2
     command -v lmp >/dev/null || { peer=0; echo "bench.sh: LAMMPS is missing (apt-get install lammps): going on without it" >&2; }
+fi
+
+yade=1
+if ! command -v yade >/dev/null; then
+    "$root/scripts/install-packages" yade || echo "bench.sh: installing yade failed" >&2
+    command -v yade >/dev/null || { yade=0; echo "bench.sh: Yade is missing (apt-get install yade): going on without it" >&2; }
 fi
 
 # What is measured: the commit, and whether the tree differs from it in more than what this script writes.
@@ -66,7 +76,7 @@ record() # <case> <round> <program>: a line of JSON from standard input goes to 
     local line
     IFS= read -r line
     printf '{"case": "%s", "round": %s, "program": "%s", %s\n' "$1" "$2" "$3" "${line#\{}" >>"$results/$1.jsonl"
-    printf '[%4d s] %s, round %s, %s: %s\n' $((SECONDS - start)) "$1" "$2" "$3" "$(grep -o '"bodies": [0-9]*\|"[a-z_]*_per_[a-z]*": [0-9.]*\|"wall_s": [0-9.]*' <<<"$line" | tr -d '"' | paste -sd ' ')"
+    printf '[%4d s] %s, round %s, %s: %s\n' $((SECONDS - start)) "$1" "$2" "$3" "$(grep -o '"[ab]": "[a-z0-9]*"\|"[a-z_]*_ns": [0-9.]*\|"bodies": [0-9]*\|"[a-z_]*_per_[a-z]*": [0-9.]*\|"wall_s": [0-9.]*' <<<"$line" | tr -d '"' | paste -sd ' ')"
 }
 
 ours() # <case> <round> <variant> <program> [option...]
@@ -142,6 +152,37 @@ for ((round = 1; round <= rounds; ++round)); do
     done
 done
 
+# Each pair of shapes once; distances that are searched for in values alone take a thousand times longer, so fewer of them.
+shapes=(sphere box capsule cylinder ellipsoid superquadric polyhedron32 polyhedron128 sdf plane)
+for ((round = 1; round <= rounds; ++round)); do
+    for ((a = 0; a < 9; ++a)); do
+        for ((b = a; b < 10; ++b)); do
+            pairs=$query_pairs
+            case ${shapes[a]}-${shapes[b]} in *sdf*) pairs=$(((query_pairs + 99) / 100)) ;; esac
+            ours contact-query "$round" particls "$contact_query" "${shapes[a]}" "${shapes[b]}" "$pairs" "$query_steps"
+        done
+    done
+done
+
+# Polyhedra that settle: our step and Yade's on the same grains, law and places; ours by penetration depth, and with many more of them.
+yade_polyhedra() # <round> <state>
+{
+    [ $yade = 1 ] || return 0
+    if (cd "$scratch" && STATE="$2" STEPS=$yade_steps OMP_NUM_THREADS=1 yade -j1 -n -x "$here/peers/polyhedra.yade.py" >yade.out 2>errors) &&
+        grep '^{' "$scratch/yade.out" >"$scratch/out"; then
+        record settling "$1" yade <"$scratch/out"
+    else
+        tail -5 "$scratch/yade.out" >>"$scratch/errors"
+        failed "settling, round $1, Yade"
+    fi
+}
+for ((round = 1; round <= rounds; ++round)); do
+    ours settling "$round" particls "$polyhedra" --bodies $yade_grains --steps $((settling_steps * 10)) --state "$scratch/settled"
+    yade_polyhedra "$round" "$scratch/settled"
+    ours settling "$round" particls-point "$polyhedra" --bodies $yade_grains --steps $((settling_steps * 10)) --faces point
+    ours settling "$round" particls-many "$polyhedra" --bodies $settling --steps $settling_steps --faces point
+done
+
 version=$(sed -n 's/^#define PLS_VERSION_TEXT *"\(.*\)"/\1/p' "$root/include/particls/types.h")
 compiler=$(sed -n 's/^CMAKE_C_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
 cat >"$results/machine.tsv" <<TEXT
@@ -154,6 +195,8 @@ kernel	$(uname -sr)
 particls	$version$commit
 compiler	$("$(readlink -f "${compiler:-$(command -v cc)}")" --version | head -1)
 LAMMPS	$(if [ $peer = 1 ]; then (lmp -h 2>/dev/null || true) | sed -n "s/^Large-scale.*Simulator - \(.*\)/\1, neighbour skin $skin m/p" | head -1; else echo "missing (apt-get install lammps): nothing is compared with it"; fi)
+libccd	$(ldconfig -p 2>/dev/null | sed -n 's/.*=> .*\/libccd\.so\.//p' | head -1 | grep . || echo "missing (apt-get install libccd-dev): nothing is compared with it")
+Yade	$(if [ $yade = 1 ]; then yade --version 2>/dev/null | sed -n 's/^Yade version: *//p' | head -1; else echo "missing (apt-get install yade): nothing is compared with it"; fi)
 TEXT
 
 status=0

@@ -11,8 +11,9 @@
 // Warm. x and u are remembered in the frame of the body that x belongs to, and so is how far they were from where they had been expected: bodies that move
 // evenly are met a step ahead, also where the contact travels over both.
 //
-// Nearly parallel faces. Where nothing curves the iterates move on evenly, by the tilt of the faces times the step, and would need 1 / tilt of them. So while changes are equal the step
-// is doubled every few iterations (any step has the same solution, and x the same multiplier), and is the first one again as soon as they are not.
+// Even motion. Where nothing curves, iterates may move on evenly for long: x along nearly parallel faces, by tilt times step, 1 / tilt times; or u with x at rest, by the distance of x and y
+// over step, where two points have to come together across a ridge. So while changes are equal the step is doubled every few iterations in the first case and halved in the second
+// (any step has the same solution, x and u go on), and it is the first one again as soon as they are not.
 //
 // Parallel faces. The least phi_B is then taken all over a patch of A, and so is phi_A over B: any two points of it would do for eq. 14, with any distance between
 // them. So the second problem starts from the foot of the first one's solution, unless the point remembered is lower.
@@ -22,8 +23,8 @@
 
 static const double step_of_size = 0.5;  // of the proximal map, in smaller bounding radii
 static const double even_within = 0.02;  // by how much changes differ that count as even, of their length
-static const double longest = 1e4;       // of lengthened steps, in first ones
-enum { EVEN_TURNS = 4 };                 // of these one lengthens the step
+static const double furthest_step = 1e4; // of changed steps, in first ones, or less than them
+enum { EVEN_TURNS = 4 };                 // of these one changes the step
 static const double far_expected = 0.05; // a change beyond this many sizes is no motion to go on with
 
 /// The least SDF of `field` over `set`.
@@ -54,30 +55,40 @@ static pls_vec3 proximal(const pls_posed *p, pls_vec3 X, double step)
     return pls_posed_world(p, pls_shape_proximal(p->shape, pls_posed_own(p, X), step / p->scale));
 }
 
-/// Do the iterates move on evenly? Then a longer step takes them further at once.
 static bool is_even(pls_vec3 change, pls_vec3 last) { return pls_length(pls_sub(change, last)) < even_within * pls_length(last); }
 
-static void solve(problem *p, double shortest, double enough)
+/// What x does in even motion tells which way the step has to go; `now` in first ones.
+static double longer_or_shorter(pls_vec3 change, pls_vec3 moved, double now)
 {
-    double step = shortest;
-    pls_vec3 z = pls_add(p->x, pls_scale(p->u, step)), last = pls_vec(0.0, 0.0, 0.0);
+    const double factor = pls_length(moved) > 0.5 * pls_length(change) ? 2.0 : 0.5;
+    return now * factor > furthest_step || now * factor < 1.0 / furthest_step ? 1.0 : factor;
+}
+
+static void solve(problem *p, double first_step, double enough)
+{
+    double step = first_step;
+    pls_vec3 z = pls_add(p->x, pls_scale(p->u, step)), last = pls_vec(0.0, 0.0, 0.0), last_x = p->x;
     p->converged = false;
     for (p->iterations = 1;; ++p->iterations)
     {
         p->x = nearest_in(p->set, z);
-        pls_vec3 y = proximal(p->field, pls_sub(pls_scale(p->x, 2.0), z), step), change = pls_sub(y, p->x);
+        pls_vec3 y = proximal(p->field, pls_sub(pls_scale(p->x, 2.0), z), step), change = pls_sub(y, p->x), moved = pls_sub(p->x, last_x);
         p->converged = pls_length(change) <= enough;
         if (p->converged || p->iterations == PLS_ADMM_MOST) break;
-        const bool even = is_even(change, last);
-        const double longer = !even ? shortest / step : p->iterations % EVEN_TURNS == 0 && step < longest * shortest ? 2.0 : 1.0;
+        double factor = 1.0;
+        if (!is_even(change, last))
+            factor = first_step / step;
+        else if (p->iterations % EVEN_TURNS == 0)
+            factor = longer_or_shorter(change, moved, step / first_step);
         z = pls_add(z, change);
-        if (longer != 1.0)
+        last = factor > 1.0 ? pls_scale(change, factor) : change;
+        last_x = p->x;
+        if (factor != 1.0)
         {
             pls_vec3 x = nearest_in(p->set, z); // the same for any step along the multiplier
-            z = pls_add(x, pls_scale(pls_sub(z, x), longer));
-            step *= longer;
+            z = pls_add(x, pls_scale(pls_sub(z, x), factor));
+            step *= factor;
         }
-        last = pls_scale(change, longer);
     }
     p->u = pls_scale(pls_sub(z, p->x), 1.0 / step);
 }

@@ -296,6 +296,10 @@ pls_depth pls_epa(const pls_convex *a, const pls_convex *b, double tolerance, pl
         if (!put_in(&h, p, chosen)) break;
     }
     if (h.best < out.delta || !out.converged) out.normal = h.best_normal, out.delta = h.best;
+    // Of round sets the last digits may be left open when there is no more room.
+    int nearest = nearest_face(&h);
+    if (!(a->polytope && b->polytope) && nearest >= 0)
+        out.converged = out.converged || out.delta - h.faces[nearest].d <= PLS_LEFT_OPEN * h.scale;
     s->count = 1, s->point[0] = p, s->weight[0] = 1.0;
     pick_witness(&h, out.normal, out.delta, s);
     out.support_calls = h.support_calls;

@@ -3,7 +3,7 @@
 // Shapes are of seven kinds (`kind`), pairs of kinds have a solver each (`table`). All solve one problem: with support functions h the overlap along n is
 // F(n) = h_A(n) + h_B(-n); the penetration depth is its least value over unit n, and in a gap minus the distance. They differ in what they need:
 //
-//   ball on anything     one SDF call: F is least where B's surface is nearest to the ball's centre
+//   ball on anything     one SDF call: F is least where B's surface is nearest to the ball's centre; of many faces: as polytopes
 //   anything on a plane  one support point
 //   with polytopes       GJK on shapes pushed apart, warm (incremental_depth.c); the expanding polytope when cold, deep, or GJK stalls
 //   smooth on smooth     Newton on the sphere of normals (smooth_depth.c); when it stalls, BFGS; then the expanding polytope
@@ -208,6 +208,12 @@ static pls_depth polytopes(const query *q)
     forget(q);
     return incremental(q);
 }
+
+/// The SDF of a polytope tries all its faces; when there are many, the corners near the ball are found faster.
+static bool has_many_faces(const pls_polytope *p) { return p->face_count > 12 && p->neighbour_start; }
+
+static pls_depth ball_polytope(const query *q) { return has_many_faces(q->b->shape->polytope) ? polytopes(q) : ball_any(q); }
+static pls_depth polytope_ball(const query *q) { return has_many_faces(q->a->shape->polytope) ? polytopes(q) : any_ball(q); }
 
 static pls_depth incremental(const query *q)
 {
@@ -425,14 +431,14 @@ static enum kind kind_of(const pls_shape *s)
 
 // clang-format off
 static solver *const table[KINDS][KINDS] = {
-//   B:           BALL       POLYTOPE     SMOOTH       SUPPORT      SDF        CONCAVE    HALF_SPACE
+//   B:           BALL           POLYTOPE       SMOOTH       SUPPORT      SDF        CONCAVE    HALF_SPACE
 /* A */
-[BALL]       = {ball_ball, ball_any,    ball_any,    ball_any,    ball_any,  ball_any,  on_plane},
-[POLYTOPE]   = {any_ball,  polytopes,   incremental, incremental, from_sdfs, from_grid, on_plane},
-[SMOOTH]     = {any_ball,  incremental, newton,      incremental, from_sdfs, from_grid, on_plane},
-[SUPPORT]    = {any_ball,  incremental, incremental, incremental, from_sdfs, from_grid, on_plane},
-[SDF]        = {any_ball,  from_sdfs,   from_sdfs,   from_sdfs,   from_sdfs, from_grid, on_plane},
-[CONCAVE]    = {any_ball,  from_grid,   from_grid,   from_grid,   from_grid, from_grid, on_plane},
+[BALL]       = {ball_ball,     ball_polytope, ball_any,    ball_any,    ball_any,  ball_any,  on_plane},
+[POLYTOPE]   = {polytope_ball, polytopes,     incremental, incremental, from_sdfs, from_grid, on_plane},
+[SMOOTH]     = {any_ball,      incremental,   newton,      incremental, from_sdfs, from_grid, on_plane},
+[SUPPORT]    = {any_ball,      incremental,   incremental, incremental, from_sdfs, from_grid, on_plane},
+[SDF]        = {any_ball,      from_sdfs,     from_sdfs,   from_sdfs,   from_sdfs, from_grid, on_plane},
+[CONCAVE]    = {any_ball,      from_grid,     from_grid,   from_grid,   from_grid, from_grid, on_plane},
 [HALF_SPACE] = {NULL}, // as B only
 };
 // clang-format on

@@ -141,7 +141,9 @@ void pls_sdf_depth_projections(const pls_posed *a, const pls_posed *b, pls_vec3 
         double turned = pls_length(pls_sub(n, out->normal)), last = out->delta;
         out->on_a = on_a, out->on_b = on_b, out->normal = n;
         out->delta = pls_dot(n, pls_sub(on_a, on_b));
-        if (turned < settled && fabs(out->delta - last) < 1e-12 * size)
+        // The map stands still as well: mixed points may leave n as it is on the way.
+        double moved = pls_length(pls_sub(on_b, from));
+        if (turned < settled && moved < settled * push && fabs(out->delta - last) < 1e-12 * size)
         {
             out->converged = true;
             return;

@@ -1,215 +1,44 @@
-// mass_quadrature.c -- mass, centre of mass and moments of anything given by an SDF, by quadrature along rays.
+// mass_quadrature.c -- mass, centre of mass and moments of anything given by an SDF.
 //
-// In polar coordinates about a point the moments of a shape are integrals over directions of what lies on a ray: the pieces of it where phi < 0, in closed form
-// for a uniform density. Pieces are found by sphere tracing (|phi| is free of surface) and a root finder, so neither convexity nor any other property is used.
-// Directions: spherical triangles, beginning with those of an icosahedron (2D: arcs), each by a rule of fifth degree, the worst halved until the sum of the
-// estimated errors is small: smooth shapes take a few thousand rays, edges of polyhedra some 1e5.
+// A cube about the shape is divided into eight (2D: a square into four) again and again. What lies deeper inside or further outside than its half diagonal is
+// settled by one value of phi; what the surface passes through is measured along columns (column_quadrature.c), twice, and where the two differ most is divided
+// first. Nothing but the SDF is used, and no property but that it is no steeper than a distance: neither convexity nor smoothness. Smooth parts, plane faces and
+// edges need few cubes, corners some ten divisions. Convex shapes without sharp edges are seen from inside instead, through squares that are divided in the same way
+// (star_quadrature.c): that takes a tenth of the calls.
 
 #include "shape/mass_quadrature.h"
 
 #include "base/alloc.h"
+#include "shape/star_quadrature.h"
 
 #include <string.h>
 
 enum {
-    MOMENTS = 10,       ///< 1, x, y, z, xx, yy, zz, xy, xz, yz
-    MOST_CELLS = 80000, ///< after which the error is what it is
-    MOST_PIECES = 64    ///< of a ray inside the shape
+    MOST_CELLS = 60000, ///< after which the error is what it is
+    FIRST = 3,          ///< divisions before any measuring
+    APPROACHES = 6,     ///< to the surface
+    NO_FACE = -1
 };
-static const double target = 2e-8;      ///< relative error aimed at
-static const double sharpness = 1e-12;  ///< of crossings, of the size
-static const double relaxation = 1.8;   ///< of the steps along a ray
-static const double smooth_gain = 64.0; ///< by which the error of a smooth cell shrinks when it is halved
+static const double target = 5e-7; ///< relative error aimed at
 
-typedef struct ray_source
-{
-    const pls_shape *shape;
-    pls_vec3 origin;
-    double reach; ///< the shape ends before this
-} ray_source;
-
-static double phi_at(const ray_source *s, pls_vec3 e, double t)
-{
-    return s->shape->ops->sdf(s->shape, pls_add(s->origin, pls_scale(e, t)));
-}
-
-/// Where phi changes sign between a and b (Ridders' method).
-static double crossing(const ray_source *s, pls_vec3 e, double a, double fa, double b, double fb)
-{
-    double x = b;
-    for (int k = 0; k < 60 && fabs(b - a) > sharpness * s->reach; ++k)
-    {
-        double m = 0.5 * (a + b), fm = phi_at(s, e, m), root = sqrt(fm * fm - fa * fb);
-        if (root == 0.0) return m;
-        x = m + (m - a) * ((fa >= fb ? 1.0 : -1.0) * fm / root);
-        double fx = phi_at(s, e, x);
-        if (fabs(fx) <= 0.01 * sharpness * s->reach) return x;
-        if ((fm < 0.0) != (fx < 0.0))
-        {
-            if (m < x)
-                a = m, fa = fm, b = x, fb = fx;
-            else
-                a = x, fa = fx, b = m, fb = fm;
-        }
-        else if ((fa < 0.0) != (fx < 0.0))
-            b = x, fb = fx;
-        else
-            a = x, fa = fx;
-    }
-    return x;
-}
-
-static double power_integral(double a, double b, int power) { return (pow(b, power + 1) - pow(a, power + 1)) / (power + 1); }
-
-/// Add the piece a .. b of a ray: integrals of t^(d - 1), t^d, t^(d + 1) times the density.
-static void add_piece(const ray_source *s, pls_vec3 e, double a, double b, double line[3])
-{
-    static const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-    static const double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-    const int first = s->shape->dimension - 1;
-    if (!s->shape->ops->density)
-    {
-        for (int p = 0; p < 3; ++p) line[p] += power_integral(a, b, first + p);
-        return;
-    }
-    double middle = 0.5 * (a + b), half = 0.5 * (b - a);
-    for (int k = 0; k < 8; ++k)
-    {
-        double t = middle + (k & 1 ? half : -half) * node[k / 2];
-        double density = s->shape->ops->density(s->shape, pls_add(s->origin, pls_scale(e, t))) * weight[k / 2] * half;
-        for (int p = 0; p < 3; ++p) line[p] += density * pow(t, first + p);
-    }
-}
-
-/// What lies on a ray.
-static void ray_moments(const ray_source *s, pls_vec3 e, double out[MOMENTS])
-{
-    const double least = 1e-7 * s->reach;
-    double line[3] = {0.0, 0.0, 0.0}, t = 0.0, phi = phi_at(s, e, 0.0), begun = 0.0;
-    bool inside = phi < 0.0;
-    while (t < s->reach)
-    {
-        // Within |phi| there is no surface, so of two points less than the sum of theirs apart none lies between unless the sign changes: look further than |phi|,
-        // and go back to it where that leaves a gap (over-relaxation, Keinert et al. 2014).
-        double step = fmax(relaxation * fabs(phi), least), value = phi_at(s, e, t + step);
-        if ((value < 0.0) == inside && step > fabs(phi) + fabs(value) && step > least)
-        {
-            step = fmax(fabs(phi), least);
-            value = phi_at(s, e, t + step);
-        }
-        if ((value < 0.0) != inside)
-        {
-            double at = crossing(s, e, t, phi, t + step, value);
-            if (inside) add_piece(s, e, begun, at, line);
-            if (inside && s->shape->convex) break;
-            inside = !inside;
-            begun = at;
-        }
-        t += step;
-        phi = value;
-    }
-    if (inside && t >= s->reach) add_piece(s, e, begun, s->reach, line);
-    const double x[3] = {e.x, e.y, e.z};
-    out[0] = line[0];
-    for (int a = 0; a < 3; ++a)
-    {
-        out[1 + a] = line[1] * x[a];
-        out[4 + a] = line[2] * x[a] * x[a];
-    }
-    out[7] = line[2] * x[0] * x[1];
-    out[8] = line[2] * x[0] * x[2];
-    out[9] = line[2] * x[1] * x[2];
-}
-
-// ---- cells of directions ----------------------------------------------------------------------------------------------------------------------------------
-
-/// A triangle of points on the unit sphere; 2D: an arc from corner[0] to corner[1].
+/// A cube, or a square of directions if `face` is not NO_FACE (star_quadrature.h).
 typedef struct cell
 {
-    pls_vec3 corner[3];
-    double sum[MOMENTS];
+    double centre[3], half;
+    int face;
+    double sum[PLS_MOMENTS];
     double error;
 } cell;
 
-static void add_ray(const ray_source *s, pls_vec3 x, double weight, double sum[MOMENTS])
+/// Cells that may be divided further, as a heap with the worst first, and what is settled.
+typedef struct tree
 {
-    double m[MOMENTS];
-    ray_moments(s, pls_unit(x), m);
-    for (int k = 0; k < MOMENTS; ++k) sum[k] += weight * m[k];
-}
-
-/// Radon's rule of fifth degree on the plane triangle; its elements seen from the centre are h / |x|^3 of their areas, h the distance of the plane.
-static void measure_triangle(const ray_source *s, cell *c)
-{
-    const double root = sqrt(15.0), a = (6.0 - root) / 21.0, b = (6.0 + root) / 21.0, wa = (155.0 - root) / 1200.0,
-                 wb = (155.0 + root) / 1200.0;
-    const double place[7][3] = {{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
-                                {a, a, 1.0 - 2.0 * a},
-                                {a, 1.0 - 2.0 * a, a},
-                                {1.0 - 2.0 * a, a, a},
-                                {b, b, 1.0 - 2.0 * b},
-                                {b, 1.0 - 2.0 * b, b},
-                                {1.0 - 2.0 * b, b, b}};
-    const double weight[7] = {0.225, wa, wa, wa, wb, wb, wb};
-    pls_vec3 cross = pls_cross(pls_sub(c->corner[1], c->corner[0]), pls_sub(c->corner[2], c->corner[0]));
-    double twice = pls_dot(cross, c->corner[0]); // twice the area times the distance of the plane
-    memset(c->sum, 0, sizeof c->sum);
-    for (int k = 0; k < 7; ++k)
-    {
-        pls_vec3 x = pls_add(pls_add(pls_scale(c->corner[0], place[k][0]), pls_scale(c->corner[1], place[k][1])),
-                             pls_scale(c->corner[2], place[k][2]));
-        double r = pls_length(x);
-        add_ray(s, x, weight[k] * 0.5 * twice / (r * r * r), c->sum);
-    }
-}
-
-/// Gauss's rule of fifth degree in the angle.
-static void measure_arc(const ray_source *s, cell *c)
-{
-    double from = atan2(c->corner[0].y, c->corner[0].x), width = c->corner[2].x; // corner[2].x holds the arc's angle
-    memset(c->sum, 0, sizeof c->sum);
-    const double node[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-    for (int k = 0; k < 3; ++k)
-    {
-        double angle = from + width * node[k];
-        add_ray(s, pls_vec(cos(angle), sin(angle), 0.0), weight[k] * width, c->sum);
-    }
-}
-
-static void measure(const ray_source *s, cell *c)
-{
-    if (s->shape->dimension == 2)
-        measure_arc(s, c);
-    else
-        measure_triangle(s, c);
-}
-
-static int split(const ray_source *s, const cell *c, cell part[4])
-{
-    if (s->shape->dimension == 2)
-    {
-        double half = 0.5 * c->corner[2].x, from = atan2(c->corner[0].y, c->corner[0].x);
-        for (int k = 0; k < 2; ++k)
-            part[k] = (cell){.corner = {pls_vec(cos(from + k * half), sin(from + k * half), 0.0), {0}, {half, 0, 0}}};
-        return 2;
-    }
-    const pls_vec3 *p = c->corner;
-    pls_vec3 m[3];
-    for (int k = 0; k < 3; ++k) m[k] = pls_unit(pls_add(p[k], p[(k + 1) % 3]));
-    part[0] = (cell){.corner = {p[0], m[0], m[2]}};
-    part[1] = (cell){.corner = {m[0], p[1], m[1]}};
-    part[2] = (cell){.corner = {m[2], m[1], p[2]}};
-    part[3] = (cell){.corner = {m[0], m[1], m[2]}};
-    return 4;
-}
-
-/// How much two sums differ, relative to the volume and the size.
-static double difference(const double *a, const double *b, double volume, double size)
-{
-    double worst = fabs(a[0] - b[0]);
-    for (int k = 1; k < MOMENTS; ++k) worst = fmax(worst, fabs(a[k] - b[k]) / (k < 4 ? size : size * size));
-    return worst / volume;
-}
+    pls_column_frame frame;
+    cell *heap;
+    size_t count;
+    double settled[PLS_MOMENTS];
+    double volume, size; ///< of the whole, and its radius of gyration: units of errors
+} tree;
 
 // ---- the worst first: a heap ---------------------------------------------------------------------------------------------------------------------------
 
@@ -235,91 +64,252 @@ static void rise(cell *heap, size_t k)
     }
 }
 
-static size_t first_cells(const ray_source *s, cell *heap)
+// ---- cells --------------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Moments of a whole cube (square) of uniform density.
+static void full_cell(const cell *c, int dimension, double sum[PLS_MOMENTS])
 {
-    if (s->shape->dimension == 2)
+    double edge = 2.0 * c->half, volume = dimension == 2 ? edge * edge : edge * edge * edge, own = c->half * c->half / 3.0;
+    const double *x = c->centre;
+    sum[0] = volume;
+    for (int a = 0; a < 3; ++a)
     {
-        for (int k = 0; k < 8; ++k) heap[k] = (cell){.corner = {pls_vec(cos(M_PI / 4 * k), sin(M_PI / 4 * k), 0.0), {0}, {M_PI / 4, 0, 0}}};
-        return 8;
+        sum[1 + a] = volume * x[a];
+        sum[4 + a] = a < dimension ? volume * (x[a] * x[a] + own) : 0.0;
     }
-    // An octahedron, each face in four: edges along the axes, where those of many shapes are.
-    size_t count = 0;
-    for (int k = 0; k < 8; ++k)
-    {
-        pls_vec3 x = pls_vec(k & 1 ? -1 : 1, 0, 0), y = pls_vec(0, k & 2 ? -1 : 1, 0), z = pls_vec(0, 0, k & 4 ? -1 : 1);
-        bool odd = ((k & 1) + (k >> 1 & 1) + (k >> 2 & 1)) % 2 == 1;
-        cell face = {.corner = {x, odd ? z : y, odd ? y : z}};
-        count += (size_t)split(s, &face, heap + count);
-    }
-    return count;
+    sum[7] = volume * x[0] * x[1], sum[8] = volume * x[0] * x[2], sum[9] = volume * x[1] * x[2];
 }
 
-static double total(const cell *heap, size_t count, double sum[MOMENTS])
+static int split(const cell *c, int dimension, cell part[8])
+{
+    const int ways = c->face == NO_FACE ? dimension : 2, parts = 1 << ways;
+    for (int k = 0; k < parts; ++k)
+    {
+        part[k] = (cell){.half = 0.5 * c->half, .face = c->face};
+        for (int a = 0; a < ways; ++a) part[k].centre[a] = c->centre[a] + (k >> a & 1 ? part[k].half : -part[k].half);
+    }
+    return parts;
+}
+
+/// By one value of phi, if it is far enough from the surface.
+static bool is_settled(const tree *t, cell *c)
+{
+    const pls_shape *shape = t->frame.shape;
+    if (c->face != NO_FACE) return false;
+    double phi = pls_column_phi(&t->frame, c->centre), diagonal = sqrt((double)shape->dimension) * c->half;
+    memset(c->sum, 0, sizeof c->sum);
+    if (fabs(phi) <= diagonal || (phi < 0.0 && shape->ops->density)) return false;
+    if (phi < 0.0) full_cell(c, shape->dimension, c->sum);
+    return true;
+}
+
+static void add_to(double sum[PLS_MOMENTS], const double other[PLS_MOMENTS])
+{
+    for (int k = 0; k < PLS_MOMENTS; ++k) sum[k] += other[k];
+}
+
+/// By how much the surface enters a cell whose columns all saw nothing of it: at a corner or in the middle of a side it may pass between them. Towards the surface and
+/// back into the cell, in turn, comes to where it enters most.
+static double overlooked(const tree *t, const cell *c)
+{
+    const pls_column_frame *f = &t->frame;
+    const int dimension = f->shape->dimension;
+    double x[3] = {c->centre[0], c->centre[1], c->centre[2]}, most = 0.0, sign = c->sum[0] == 0.0 ? 1.0 : -1.0;
+    for (int k = 0; k < APPROACHES; ++k)
+    {
+        double g[3], phi = pls_column_phi(f, x);
+        most = fmax(most, -sign * phi);
+        pls_column_gradient(f, x, g);
+        double aim = phi + sign * 0.1 * c->half; // a little beyond the surface
+        for (int a = 0; a < dimension; ++a) x[a] = fmin(fmax(x[a] - aim * g[a], c->centre[a] - c->half), c->centre[a] + c->half);
+    }
+    return most;
+}
+
+/// The largest of the differences of two sets of moments about `centre`, relative to the volume and the size of the whole.
+static double difference(const tree *t, const double *a, const double *b, const double centre[3])
+{
+    double d[PLS_MOMENTS];
+    for (int k = 0; k < PLS_MOMENTS; ++k) d[k] = a[k] - b[k];
+    const double far[3] = {fabs(centre[0]) + t->size, fabs(centre[1]) + t->size, fabs(centre[2]) + t->size};
+    double reach = fmax(far[0], fmax(far[1], far[2])), worst = fabs(d[0]) * reach * reach / (t->size * t->size);
+    for (int k = 1; k < 4; ++k) worst = fmax(worst, fabs(d[k]) * reach / (t->size * t->size));
+    for (int k = 4; k < PLS_MOMENTS; ++k) worst = fmax(worst, fabs(d[k]) / (t->size * t->size));
+    return worst / t->volume;
+}
+
+static void measure(const tree *t, cell *c)
+{
+    double again[PLS_MOMENTS], volume = pow(2.0 * c->half, t->frame.shape->dimension);
+    if (c->face != NO_FACE)
+    {
+        const double origin[3] = {0.0, 0.0, 0.0};
+        pls_star_moments(&t->frame, c->face, c->centre, c->half, c->sum, again);
+        c->error = difference(t, c->sum, again, origin);
+        return;
+    }
+    pls_column_moments(&t->frame, c->centre, c->half, c->sum, again);
+    c->error = difference(t, c->sum, again, c->centre);
+    bool empty = c->sum[0] == 0.0, full = !t->frame.shape->ops->density && fabs(c->sum[0] - volume) <= 1e-12 * volume;
+    if (!empty && !full) return;
+    const double missed[PLS_MOMENTS] = {overlooked(t, c) * volume / c->half}, nothing[PLS_MOMENTS] = {0.0};
+    c->error += difference(t, missed, nothing, c->centre);
+}
+
+static void push(tree *t, const cell *c)
+{
+    t->heap[t->count++] = *c;
+    rise(t->heap, t->count - 1);
+}
+
+/// Divide a cell that is measured; gives the sum of the parts' errors. Where the parts say something else than the whole by more than all of them admit, some of the
+/// surface was overlooked, by the whole or by a part: half of that is added to their errors.
+static double divide(tree *t, const cell *whole)
+{
+    cell part[8];
+    const int parts = split(whole, t->frame.shape->dimension, part);
+    double together[PLS_MOMENTS] = {0.0}, error = 0.0;
+    int open = 0;
+    for (int k = 0; k < parts; ++k)
+    {
+        const bool settled = is_settled(t, &part[k]);
+        if (!settled) measure(t, &part[k]);
+        add_to(together, part[k].sum);
+        if (settled)
+            add_to(t->settled, part[k].sum);
+        else
+            error += part[k].error, part[open++] = part[k];
+    }
+    const double origin[3] = {0.0, 0.0, 0.0}, *about = whole->face == NO_FACE ? whole->centre : origin;
+    const double overlooked_by = fmax(0.0, 0.5 * (difference(t, together, whole->sum, about) - whole->error - error));
+    for (int k = 0; k < open; ++k)
+    {
+        part[k].error += overlooked_by / open;
+        push(t, &part[k]);
+    }
+    return open > 0 ? error + overlooked_by : 0.0;
+}
+
+/// Divide `c` `times` times unmeasured, then measure and divide once more what is not settled.
+static void plant(tree *t, const cell *c, int times)
+{
+    cell part[8];
+    const int parts = split(c, t->frame.shape->dimension, part);
+    for (int k = 0; k < parts; ++k)
+    {
+        if (is_settled(t, &part[k]))
+            add_to(t->settled, part[k].sum);
+        else if (times > 1)
+            plant(t, &part[k], times - 1);
+        else
+        {
+            measure(t, &part[k]);
+            divide(t, &part[k]);
+        }
+    }
+}
+
+static double total(tree *t, double sum[PLS_MOMENTS])
 {
     double error = 0.0;
-    for (int k = 0; k < MOMENTS; ++k) sum[k] = 0.0;
-    for (size_t c = 0; c < count; ++c)
+    memcpy(sum, t->settled, sizeof t->settled);
+    for (size_t c = 0; c < t->count; ++c)
     {
-        error += heap[c].error;
-        for (int k = 0; k < MOMENTS; ++k) sum[k] += heap[c].sum[k];
+        error += t->heap[c].error;
+        add_to(sum, t->heap[c].sum);
     }
+    t->volume = fmax(fabs(sum[0]), 1e-300);
+    double square = (sum[4] + sum[5] + sum[6] - (sum[1] * sum[1] + sum[2] * sum[2] + sum[3] * sum[3]) / t->volume) / t->volume;
+    t->size = square > 0.0 ? sqrt(square) : t->frame.reach;
     return error;
 }
 
-/// Halve cells until the estimated errors sum to little.
-static double refine(const ray_source *s, cell *heap, size_t *count, double size, double sum[MOMENTS])
+/// Divide the worst; by how much the error changes.
+static double divide_worst(tree *t)
 {
-    for (size_t c = 0; c < *count; ++c) measure(s, &heap[c]), heap[c].error = 1.0 / (double)*count;
-    double error = total(heap, *count, sum), volume = fabs(sum[0]);
-    while (*count + 4 < MOST_CELLS && error > target)
+    const cell worst = t->heap[0];
+    t->heap[0] = t->heap[--t->count];
+    sink(t->heap, t->count, 0);
+    return divide(t, &worst) - worst.error;
+}
+
+// ---- all together ---------------------------------------------------------------------------------------------------------------------------------------------
+
+/// Better seen from the origin: convex shapes without sharp edges.
+static bool is_star(const tree *t)
+{
+    const pls_shape *shape = t->frame.shape;
+    const double origin[3] = {0.0, 0.0, 0.0};
+    if (shape->dimension == 2 || !shape->convex || shape->ops->density || !(shape->ops->smooth || shape->margin > 0.0)) return false;
+    return pls_column_phi(&t->frame, origin) < -0.01 * t->frame.reach;
+}
+
+/// Unit of errors, until they are known better: those of a ball that fills the reach.
+static double refine(tree *t, double sum[PLS_MOMENTS])
+{
+    const cell all = {.half = t->frame.reach, .face = NO_FACE};
+    t->size = t->frame.reach, t->volume = pow(t->frame.reach, t->frame.shape->dimension);
+    if (is_star(t))
+        for (int face = 0; face < 6; ++face)
+        {
+            cell side = {.half = 1.0, .face = face};
+            measure(t, &side);
+            divide(t, &side);
+        }
+    else
+        plant(t, &all, FIRST);
+    double error = total(t, sum);
+    for (size_t turn = 1; t->count > 0 && t->count + 8 < MOST_CELLS && error > target; ++turn)
     {
-        cell worst = heap[0], part[4];
-        int parts = split(s, &worst, part);
-        double together[MOMENTS] = {0};
-        for (int k = 0; k < parts; ++k)
-        {
-            measure(s, &part[k]);
-            for (int m = 0; m < MOMENTS; ++m) together[m] += part[k].sum[m];
-        }
-        // The parts err by far less than they differ from the whole, at edges by an eighth. They may also be alike because both miss an edge that cuts off
-        // a corner, so no estimate falls faster than those of smooth integrands do.
-        double left = fmax(difference(together, worst.sum, fmax(volume, 1e-300), size) / 8.0, worst.error / smooth_gain);
-        error += left - worst.error;
-        for (int k = 0; k < parts; ++k) part[k].error = left / parts;
-        heap[0] = part[0];
-        sink(heap, *count, 0);
-        for (int k = 1; k < parts; ++k)
-        {
-            heap[(*count)++] = part[k];
-            rise(heap, *count - 1);
-        }
-        if (*count % 1024 < 4) error = total(heap, *count, sum), volume = fabs(sum[0]); // anew: differences leave round-off
+        error += divide_worst(t);
+        if (turn % 64 == 0 || error <= target) error = total(t, sum); // anew: differences leave round-off
     }
-    return total(heap, *count, sum);
+    return total(t, sum);
+}
+
+/// Moments of the turned frame about its origin, as those of the shape about the centre of mass.
+static void tell(const tree *t, const double m[PLS_MOMENTS], pls_mass_properties *out)
+{
+    const pls_vec3 *e = t->frame.axis;
+    const double c[3] = {m[1] / m[0], m[2] / m[0], m[3] / m[0]};
+    double second[3][3], own[3][3] = {{0.0}};
+    static const int place[3][3] = {{4, 7, 8}, {7, 5, 9}, {8, 9, 6}};
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) second[a][b] = m[place[a][b]] - m[0] * c[a] * c[b];
+    out->volume = m[0];
+    out->centre = t->frame.origin;
+    for (int a = 0; a < 3; ++a) out->centre = pls_add(out->centre, pls_scale(e[a], c[a]));
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
+        {
+            const double p[3] = {e[a].x, e[a].y, e[a].z}, q[3] = {e[b].x, e[b].y, e[b].z};
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) own[i][j] += second[a][b] * p[i] * q[j];
+        }
+    out->inertia[2] = own[0][0] + own[1][1];
+    if (t->frame.shape->dimension == 2) return;
+    out->inertia[0] = own[1][1] + own[2][2];
+    out->inertia[1] = own[0][0] + own[2][2];
+    out->inertia[3] = -own[0][1];
+    out->inertia[4] = -own[0][2];
+    out->inertia[5] = -own[1][2];
 }
 
 pls_status pls_mass_by_quadrature(const pls_shape *shape, pls_vec3 origin, double reach, pls_mass_properties *out)
 {
-    cell *heap = NULL;
-    double m[MOMENTS];
+    // About (1, 1, 1) by 60 degrees all axes would have components of 1/3 and 2/3 along all others; a little off, so that nothing coincides.
+    const pls_quat turn =
+        shape->dimension == 2 ? (pls_quat){cos(0.29), 0.0, 0.0, sin(0.29)} : pls_quat_unit((pls_quat){0.866, 0.263, 0.291, 0.312});
+    tree t = {.frame = {.shape = shape, .origin = origin, .reach = 1.001 * reach}};
+    double m[PLS_MOMENTS];
     *out = (pls_mass_properties){0};
-    PLS_TRY(pls_allocate(&heap, MOST_CELLS, sizeof *heap, "cells of the mass quadrature"));
-    ray_source source = {shape, origin, reach};
-    size_t count = first_cells(&source, heap);
-    double error = refine(&source, heap, &count, reach, m);
-    pls_release(&heap);
+    t.frame.axis[0] = pls_rotate(turn, pls_vec(1.0, 0.0, 0.0));
+    t.frame.axis[1] = pls_rotate(turn, pls_vec(0.0, 1.0, 0.0));
+    t.frame.axis[2] = pls_rotate(turn, pls_vec(0.0, 0.0, 1.0));
+    PLS_TRY(pls_allocate(&t.heap, MOST_CELLS, sizeof *t.heap, "cells of the mass quadrature"));
+    out->error = refine(&t, m);
+    pls_release(&t.heap);
     if (!(m[0] > 0.0)) return pls_fail(PLS_INVALID_ARGUMENT, "the shape has no volume: its SDF is negative nowhere");
-    pls_vec3 c = pls_vec(m[1] / m[0], m[2] / m[0], m[3] / m[0]);
-    out->volume = m[0];
-    out->centre = pls_add(origin, c);
-    const double xx = m[4] - m[0] * c.x * c.x, yy = m[5] - m[0] * c.y * c.y, zz = m[6] - m[0] * c.z * c.z;
-    out->inertia[2] = xx + yy;
-    out->error = error;
-    if (shape->dimension == 2) return PLS_OK;
-    out->inertia[0] = yy + zz;
-    out->inertia[1] = xx + zz;
-    out->inertia[3] = -(m[7] - m[0] * c.x * c.y);
-    out->inertia[4] = -(m[8] - m[0] * c.x * c.z);
-    out->inertia[5] = -(m[9] - m[0] * c.y * c.z);
+    tell(&t, m, out);
     return PLS_OK;
 }

@@ -4,8 +4,9 @@
 
 #include <particls/shape.h>
 
-/// By quadrature along rays from `origin` (anywhere near the shape); the shape lies within `reach` of it [m]. Relative error aimed at 2e-8, as told in `out->error`;
-/// 1e-6 and better for shapes with edges. INVALID_ARGUMENT if the shape has no volume.
+/// By quadrature over a cube about `origin` (anywhere near the shape); the shape lies within `reach` of it [m]. `out->error`, 5e-7 or less unless the shape is very
+/// rough, is meant as a bound of the relative errors of the volume, of the centre (relative to the radius of gyration) and of the inertia tensor (relative to its
+/// trace): true errors mostly are some ten times smaller. INVALID_ARGUMENT if the shape has no volume.
 pls_status pls_mass_by_quadrature(const pls_shape *shape, pls_vec3 origin, double reach, pls_mass_properties *out);
 
 #endif

@@ -5,9 +5,10 @@ set grid x lc rgb '#dddddd'
 set key outside top center horizontal
 set logscale x
 set format x '10^{%L}'
-set xlabel 'change of energy in a collision / energy before: median, and line to the worst of all'
+set xlabel 'change of energy: median, line to the worst'
 set xrange [1e-8:*]
-set yrange [:] reverse
+stats data.'/energies.tsv' using 2 nooutput
+set yrange [STATS_records-0.4:-0.6]
 set style line 1 lc rgb '#1f77b4' lw 1.5 pt 7 ps 0.6
 set style line 2 lc rgb '#d62728' lw 1.5 pt 5 ps 0.6
 plot data.'/energies.tsv' using 2:($0-0.15):2:3:ytic(1) with xerrorbars ls 1 title 'penetration depth', \

@@ -434,25 +434,22 @@ static pls_posed moved(pls_posed p, pls_vec3 by)
     return p;
 }
 
-/// Move B along e until the overlap is `target`, by halving; the depth is measured anew afterwards.
+/// Bring B in along e until it overlaps by `target`, nearly: a move changes the overlap by no more than its length, so it never goes deeper. What it comes to is measured anew.
 static void approach(const body *a, body *b, pls_vec3 e, double target)
 {
     pls_narrow_counts ignored = {0};
-    double low = -2.0 * (a->pose.size + b->pose.size), high = -low;
     pls_vec3 home = pls_sub(pls_posed_world(&a->pose, a->shape->mass.centre), pls_posed_world(&b->pose, b->shape->mass.centre));
     const pls_posed start = moved(b->pose, home);
-    low = 0.0;
-    for (int k = 0; k < 30; ++k)
+    double distance = 1.01 * (a->pose.size + b->pose.size);
+    for (int k = 0; k < 60; ++k)
     {
-        double middle = 0.5 * (low + high);
         pls_pair_state state = {{0}};
         pls_touch t;
-        set_pose(b, moved(start, pls_scale(e, middle)));
+        set_pose(b, moved(start, pls_scale(e, distance)));
         query(a, b, &state, &t, &ignored);
-        if (t.delta > target)
-            low = middle;
-        else
-            high = middle;
+        double left = target - t.delta;
+        if (left <= 0.01 * fabs(target)) break;
+        distance -= left;
     }
 }
 

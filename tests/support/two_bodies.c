@@ -18,12 +18,15 @@ pls_posed two_bodies_pose(const two_bodies_body *body) { return pls_pose(body->s
 
 static double over(double spin, double moment) { return moment > 0.0 ? spin / moment : 0.0; }
 
-static pls_vec3 angular_velocity(const two_bodies_body *body, pls_quat orientation)
+/// Change of angular velocity by a change of spin.
+static pls_vec3 turning(const two_bodies_body *body, pls_quat orientation, pls_vec3 spin)
 {
     if (isinf(body->mass)) return pls_vec(0.0, 0.0, 0.0);
-    pls_vec3 l = pls_rotate_back(orientation, body->spin);
+    pls_vec3 l = pls_rotate_back(orientation, spin);
     return pls_rotate(orientation, pls_vec(over(l.x, body->moments.x), over(l.y, body->moments.y), over(l.z, body->moments.z)));
 }
+
+static pls_vec3 angular_velocity(const two_bodies_body *body, pls_quat orientation) { return turning(body, orientation, body->spin); }
 
 pls_vec3 two_bodies_angular_velocity(const two_bodies_body *body) { return angular_velocity(body, body->orientation); }
 
@@ -69,6 +72,18 @@ void two_bodies_step(two_bodies *pair, double dt)
     for (int k = 0; k < 2; ++k) drift(&pair->body[k], dt);
     two_bodies_begin(pair);
     kick(pair, 0.5 * dt);
+}
+
+double two_bodies_effective_mass(const two_bodies *pair, pls_vec3 point, pls_vec3 n)
+{
+    double inverse = 0.0;
+    for (int k = 0; k < 2; ++k)
+    {
+        const two_bodies_body *body = &pair->body[k];
+        pls_vec3 torque = pls_cross(pls_sub(point, body->position), n);
+        inverse += 1.0 / body->mass + pls_dot(torque, turning(body, body->orientation, torque));
+    }
+    return 1.0 / inverse;
 }
 
 double two_bodies_energy(const two_bodies *pair)

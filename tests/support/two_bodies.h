@@ -41,6 +41,8 @@ pls_vec3 two_bodies_angular_velocity(const two_bodies_body *body);
 /// Find the contact where the bodies are; before the first step.
 void two_bodies_begin(two_bodies *pair);
 void two_bodies_step(two_bodies *pair, double dt);
+/// Mass that a push at `point` along the unit vector n moves.
+double two_bodies_effective_mass(const two_bodies *pair, pls_vec3 point, pls_vec3 n);
 /// Kinetic, with k delta^2 / 2.
 double two_bodies_energy(const two_bodies *pair);
 
