@@ -18,9 +18,7 @@ bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
 /// Where two bodies touch over an area, force and point alone do not tell how they rub and damp when they turn on each other: these do.
 /// @{
 
-/// Radius at which all of the area's friction resists turning about the normal [m]; 0 for a point. Right for evenly pressed discs, whose mean distance from the middle
-/// it is (2/3 of their radius), and to half a percent for squares.
-double pls_touch_lever(const pls_touch *touch);
+static inline bool pls_touch_is_point(const pls_touch *t) { return t->spread[0] == 0.0 && t->spread[1] == 0.0 && t->spread[2] == 0.0; }
 /// Four points, a quarter of the area each, that have its second moments: from `touch->point`, opposite ones in turn.
 void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4]);
 /// @}

@@ -14,7 +14,7 @@
 // turned about it by the angle of the pair's mean spin.
 //
 // Areas. Bodies that lie on each other with faces touch over an area (`spread` of pls_touch), on which each place rubs and damps by itself. Turning about the normal is
-// slip at a lever (pls_touch_lever): the third component of spring, slip velocity and shear force, along the normal, is that of turning, and the law treats all three as
+// slip at a lever (`lever`): the third component of spring, slip velocity and shear force, along the normal, is that of turning, and the law treats all three as
 // one vector. So turning has the stiffness, the dashpots and the energy of the law, and shares the cone with sliding: |Fs|^2 + (couple/lever)^2 <= (mu Fn)^2, the ellipsoid by
 // which Howe & Cutkosky (1996) approximate the limit surface of sliding patches. Rocking about axes in the face: the law is asked for its normal force at four
 // points with the area's second moments (pls_touch_corners) as they approach each other, and the couple of what differs acts. For a dashpot cn that is the integral of
@@ -209,11 +209,14 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     const pls_law *law = &in->laws->law[pair->law];
     const pair_motion m = motion_of(in, pair);
     const pls_vec3 n = t->normal, half = pls_scale(n, law->lever_at_surface ? 0.5 * t->depth : 0.0);
-    const pls_vec3 arm_i = pls_sub(pls_add(t->point, half), m.centre_i), arm_j = pls_sub(pls_sub(t->point, half), m.centre_j);
-    pls_vec3 v = pls_sub(pls_add(m.end_v_i, pls_cross(m.end_w_i, arm_i)), pls_add(m.end_v_j, pls_cross(m.end_w_j, arm_j)));
-    const double vn = pls_dot(v, n);
+    const pls_vec3 arm_i = pls_sub(pls_add(t->middle, half), m.centre_i), arm_j = pls_sub(pls_sub(t->middle, half), m.centre_j);
+    const pls_vec3 v = pls_sub(pls_add(m.end_v_i, pls_cross(m.end_w_i, arm_i)), pls_add(m.end_v_j, pls_cross(m.end_w_j, arm_j)));
+    const pls_vec3 end_turn = pls_sub(m.end_w_i, m.end_w_j);
+    // The normal force acts as a force on a line and a couple `twist` about it; the rate at which both do work is that of the force at this approach.
+    double vn = pls_dot(v, n);
+    if (!pls_touch_is_point(t)) vn += pls_dot(pls_cross(end_turn, pls_sub(t->point, t->middle)), n) + t->twist * pls_dot(end_turn, n);
 
-    const double lever = pls_touch_lever(t);
+    const double lever = t->lever;
     double old_lever = lever, turning = 0.0; // turning: the spring along the normal
     pls_vec3 old_n = n, mid_i = arm_i, mid_j = arm_j, spring = pls_vec(0.0, 0.0, 0.0);
     if (!fresh)
@@ -238,7 +241,7 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     const double turned = 0.5 * in->dt * pls_dot(pls_add(m.w_i, m.w_j), n);
     pls_vec3 step = turn_about(tilt(tangential(u, mid_n), mid_n, n), n, 0.5 * turned);
     double since = in->dt; // a contact that begins within the step has had the time since touch only
-    if (fresh && vn * in->dt > t->delta) since = t->delta / vn;
+    if (fresh && vn * in->dt > t->depth) since = t->depth / vn;
     spring = pls_add(turn_about(tilt(spring, old_n, n), n, turned), pls_scale(step, since));
 
     pls_vec3 slip = tangential(v, n);
@@ -246,7 +249,7 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     {
         turning += since * 0.5 * (old_lever + lever) * pls_dot(pls_sub(m.w_i, m.w_j), mid_n);
         spring = pls_add(spring, pls_scale(n, turning));
-        slip = pls_add(slip, pls_scale(n, lever * pls_dot(pls_sub(m.end_w_i, m.end_w_j), n)));
+        slip = pls_add(slip, pls_scale(n, lever * pls_dot(end_turn, n)));
     }
     work->delta[k] = t->delta;
     work->normal_velocity[k] = vn;
@@ -269,10 +272,10 @@ static void store_contact(pls_solid_list *list, const pls_contact_input *in, siz
     pls_solid_memory *memory = &list->memory[c];
     const pls_touch *t = &list->touch[c];
     const pls_body_place *p = &in->place[pair->row_i];
-    const pls_vec3 n = t->normal, arm_i = pls_sub(t->point, pls_vec(p->x, p->y, p->z));
+    const pls_vec3 n = t->normal, arm_i = pls_sub(t->middle, pls_vec(p->x, p->y, p->z));
     const pair_motion m = motion_of(in, pair);
-    const pls_vec3 arm_j = pls_sub(t->point, m.centre_j);
-    const double lever = pls_touch_lever(t);
+    const pls_vec3 arm_j = pls_sub(t->middle, m.centre_j);
+    const double lever = t->lever;
     pls_vec3 shear = pls_vec(work->shear_force[0][k], work->shear_force[1][k], work->shear_force[2][k]);
     double turning = 0.0;
     if (lever > 0.0)
@@ -281,7 +284,8 @@ static void store_contact(pls_solid_list *list, const pls_contact_input *in, siz
         shear = pls_sub(shear, pls_scale(n, turning));
     }
     const pls_vec3 force = pls_sub(shear, pls_scale(n, work->normal_force[k]));
-    const pls_vec3 twist = pls_scale(n, t->twist * work->normal_force[k] - lever * turning); // on j, and against it on i
+    pls_vec3 twist = pls_scale(n, t->twist * work->normal_force[k] - lever * turning); // on j, and against it on i
+    if (!pls_touch_is_point(t)) twist = pls_add(twist, pls_scale(pls_cross(pls_sub(t->point, t->middle), n), work->normal_force[k]));
     double *slot = list->slot + c * PLS_SOLID_SLOT;
     put3(slot, force), put3(slot + 4, pls_sub(pls_cross(arm_i, force), twist));
     put3(slot + 8, pls_scale(force, -1.0)), put3(slot + 12, pls_add(pls_cross(force, arm_j), twist));
@@ -345,7 +349,7 @@ static void damp_rocking(pls_solid_list *list, const pls_contact_input *in, cons
         size_t taken = 0;
         for (; k < count && taken < MOST; ++k)
         {
-            if (!(list->memory[batch[k]].lever > 0.0)) continue;
+            if (pls_touch_is_point(&list->touch[batch[k]])) continue;
             frame_corners(list, in, batch[k], approach[k], work, 4 * taken);
             chosen[taken++] = batch[k];
         }
@@ -373,7 +377,7 @@ static void answer(pls_solid_list *list, const pls_contact_input *in, const uint
         store_contact(list, in, batch[k], work, k);
         list->memory[batch[k]].touches = PLS_SOLID_TOUCHES;
         list->pair[batch[k]].ended = 0;
-        any_area = any_area || list->memory[batch[k]].lever > 0.0;
+        any_area = any_area || !pls_touch_is_point(&list->touch[batch[k]]);
     }
     if (!any_area) return;
     double approach[PLS_CONTACT_BLOCK];

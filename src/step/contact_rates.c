@@ -70,18 +70,19 @@ static pls_contact_rate solid_rate(const pls_world *world, size_t c)
     return t;
 }
 
-/// Rocking stiffness of the laws of faces is at most twice that of kn spread over the area (manifold; volume: once), so the corners are set wider by the root of two.
+/// Flat faces resist rocking like kn spread over the area with volume, four times as much with manifold (the third moment of a tilted overlap over its second: delta grows by
+/// 2 phi^2 S/delta). So corners are set twice as wide.
 int pls_solid_rates_of(const pls_world *world, size_t c, pls_contact_rate rates[PLS_SOLID_RATES])
 {
     const pls_touch *touch = &world->solids.touch[c];
     const pls_contact_rate whole = solid_rate(world, c);
     rates[0] = whole;
-    if (!(pls_touch_lever(touch) > 0.0)) return 1;
+    if (pls_touch_is_point(touch)) return 1;
     pls_vec3 corner[PLS_SOLID_RATES];
     pls_touch_corners(touch, corner);
     for (int k = 0; k < PLS_SOLID_RATES; ++k)
     {
-        const pls_vec3 out = pls_scale(corner[k], M_SQRT2);
+        const pls_vec3 out = pls_scale(corner[k], 2.0);
         rates[k] = whole;
         rates[k].arm_i = pls_add(whole.arm_i, out), rates[k].arm_j = pls_add(whole.arm_j, out);
         rates[k].k.kn *= 0.25, rates[k].k.kt *= 0.25, rates[k].k.cn *= 0.25, rates[k].k.ct *= 0.25;

@@ -2,6 +2,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -57,18 +58,29 @@ static pls_shape_id add_shape(pls_world *world, const char *shape, const verify_
     return id;
 }
 
+/// "box", "box 2", "box 3": the first that is free.
+static void free_name(const verify_scene *scene, const char *shape, char name[PLS_NAME_SIZE])
+{
+    snprintf(name, PLS_NAME_SIZE, "%s", shape);
+    for (int k = 2; pls_world_find_shape(scene->world, name).index1; ++k) snprintf(name, PLS_NAME_SIZE, "%s %d", shape, k);
+}
+
 pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values)
 {
     pls_shape_id id;
-    MUST(pls_world_add_shape(scene->world, shape, verify_shape(shape), values, &id));
+    char name[PLS_NAME_SIZE];
+    free_name(scene, shape, name);
+    MUST(pls_world_add_shape(scene->world, name, verify_shape(shape), values, &id));
     return id;
 }
 
-static pls_shape_id use_shape(const verify_scene *scene, const char *name, const pls_shape_input *input)
+static pls_shape_id use_shape(const verify_scene *scene, const char *ops, const pls_shape_input *input)
 {
     pls_shape *shape;
     pls_shape_id id;
-    MUST(pls_shape_make(verify_shape(name), scene->dimension, input, name, &shape));
+    char name[PLS_NAME_SIZE];
+    free_name(scene, ops, name);
+    MUST(pls_shape_make(verify_shape(ops), scene->dimension, input, name, &shape));
     MUST(pls_world_use_shape(scene->world, name, shape, &id));
     pls_shape_free(shape);
     return id;
