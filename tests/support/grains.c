@@ -33,7 +33,7 @@ pls_shape_id grain_shape(const verify_scene *scene, enum grain_kind kind)
         case GRAIN_SOAP: return verify_add_shape(scene, "box", (const double[]){0.3, 0.24, 0.2, 0.08});
         case GRAIN_BOX: return verify_add_shape(scene, "box", (const double[]){0.33, 0.26, 0.22, 0.0});
         case GRAIN_STONE: return stone(scene);
-        default: return verify_add_dumbbell(scene, 0.25, 0.4);
+        default: return verify_add_dumbbell(scene, 0.22, 0.46);
     }
 }
 
