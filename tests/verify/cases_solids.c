@@ -135,7 +135,12 @@ void case_stack(verify_sheet *sheet)
         for (int law = 0; law < LAWS; ++law)
             for (int turned = 0; turned < (dimension == 3 && sheet->thorough ? 2 : 1); ++turned)
             {
-                const int settle = turned ? 20000 : sheet->thorough ? 4000 : 2000, steps = !sheet->thorough ? 3000 : turned ? 200000 : 1000000;
+                const int settle = turned            ? 20000
+                                   : sheet->thorough ? 4000
+                                                     : 2000,
+                          steps = !sheet->thorough ? 3000
+                                  : turned         ? 200000
+                                                   : 1000000;
                 ground g = open_ground(dimension, laws[law], 2e-4, damped);
                 MUST(pls_world_add_gravity(g.scene.world, pls_scale(g.up, -gravity)));
                 pls_body_id id[COUNT];
