@@ -3,6 +3,8 @@
 #ifndef PARTICLS_CONTACT_H
 #define PARTICLS_CONTACT_H
 
+#include <stdint.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -35,6 +37,15 @@ static inline pls_narrow_options pls_default_narrow_options(void)
     pls_narrow_options options = {PLS_SOLVER_DEPTH, PLS_FACES_POINT, 0.0, 1e-6};
     return options;
 }
+
+/// What finding the contacts of bodies that are not spheres has cost, and where it was hard.
+typedef struct pls_narrow_counts
+{
+    uint64_t queries, iterations;
+    uint64_t restarts;  ///< what the last step left did not serve: solved from nothing
+    uint64_t fallbacks; ///< a solver did not converge: a slower, sure one was asked
+    uint64_t failures;  ///< none converged: the best bound of the depth was taken
+} pls_narrow_counts;
 
 #ifdef __cplusplus
 }

@@ -115,6 +115,7 @@ struct pls_shape
     bool convex;
     double margin;                ///< [m]
     const pls_polytope *polytope; ///< or null
+    double inner_radius;          ///< of balls that touch the surface from inside and fit everywhere; not convex: 0 [m]
     double radius;                ///< of the bounding sphere about the centre of mass [m]; INFINITY if unbounded
     pls_vec3 lower, upper;        ///< bounds [m]
     pls_mass_properties mass;     ///< as measured, in the shape's frame

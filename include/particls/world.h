@@ -212,6 +212,9 @@ typedef struct pls_world_figures
     double energy_damped, energy_slid;   ///< dissipated since the start by dashpots and by sliding [J]
     pls_vec3 momentum, angular_momentum; ///< of bodies with mass, angular about the origin [kg m/s], [kg m^2/s]
 } pls_world_figures;
+
+/// Counts of contact detection between bodies that are not spheres, since the first step.
+pls_narrow_counts pls_world_narrow_counts(const pls_world *world);
 pls_status pls_world_get_figures(const pls_world *world, pls_world_figures *figures);
 /// @}
 

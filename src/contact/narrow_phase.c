@@ -5,7 +5,9 @@
 //
 //   ball on anything     one SDF call: F is least where B's surface is nearest to the ball's centre; of many faces: as polytopes
 //   anything on a plane  one support point
-//   with polytopes       GJK on shapes pushed apart, warm (incremental_depth.c); the expanding polytope when cold, deep, or GJK stalls
+//   two polytopes        a surface about the origin carried from step to step (polytope_depth.c)
+//   other supports       Newton on what the features that touched leave open (feature_depth.c); when others do, GJK on shapes pushed apart, warm (incremental_depth.c); the
+//                        expanding polytope when cold, deep, or GJK stalls
 //   smooth on smooth     Newton on the sphere of normals (smooth_depth.c); when it stalls, BFGS; then the expanding polytope
 //   SDFs alone           BFGS on one point between the surfaces, then alternating projections (sdf_depth.c), then the expanding polytope on support points that follow from
 //                        the SDF. What won last is tried first
@@ -20,6 +22,7 @@
 #include "contact/admm.h"
 #include "contact/convex.h"
 #include "contact/faces.h"
+#include "contact/feature_depth.h"
 #include "contact/polytope_depth.h"
 #include "contact/sdf_depth.h"
 
@@ -31,9 +34,11 @@ enum {
     NORMAL = 1, ///< in A's frame, 3
     DELTA = 4,  ///< [m]
     OWN = 5,    ///< what the winner needs: `pls_depth_state` from its `size`, the memory of `pls_polytope_depth`, or `pls_sdf_state`
-    ADMM = 8    ///< 24, for that solver alone
+    FEATURES = PLS_PAIR_STATE - PLS_FEATURE_MEMORY, ///< of `pls_feature_depth`, beside what INCREMENTAL needs
+    ADMM = 8                                        ///< 24, for that solver alone
 };
-enum winner { NOTHING, INCREMENTAL, POLYTOPES, NEWTON, BFGS, PROJECTIONS, EXPANDING };
+enum winner { NOTHING, INCREMENTAL, POLYTOPES, NEWTON, BFGS, PROJECTIONS, EXPANDING, NEWTON_ON_FEATURES };
+_Static_assert(FEATURES * sizeof(double) >= sizeof(pls_depth_state), "two memories overlap");
 
 static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
 
@@ -228,6 +233,31 @@ static pls_depth incremental(const query *q)
     return d;
 }
 
+static bool is_least(const query *q, const pls_depth *d);
+
+/// The same features as in the last step, mostly.
+static pls_depth by_features(const query *q)
+{
+    pls_depth d;
+    const enum winner winner = last_winner(q);
+    if (winner != NOTHING && is_far(q, &d)) return d;
+    if (winner == INCREMENTAL || winner == NEWTON_ON_FEATURES)
+    {
+        const bool found = pls_feature_depth(q->a, q->b, recalled_normal(q), q->state + FEATURES, &d);
+        if (found && is_least(q, &d))
+        {
+            count(q, d.iterations, &d);
+            remember(q, NEWTON_ON_FEATURES, &d);
+            q->state[DELTA] -=
+                q->a->shape->margin * q->a->scale + q->b->shape->margin * q->b->scale; // of the cores: what INCREMENTAL would go on from
+            return d;
+        }
+        memset(q->state + FEATURES, 0, PLS_FEATURE_MEMORY * sizeof *q->state);
+        q->state[WINNER] = found ? NOTHING : INCREMENTAL; // a minimum that may not be the least: from scratch
+    }
+    return incremental(q);
+}
+
 /// With curvature on both sides. BFGS is right where Newton has met a flat place.
 static bool bfgs(const query *q, pls_depth *d);
 
@@ -316,11 +346,12 @@ static void remember_projections(const query *q, const pls_depth *d)
     q->state[OWN] = x.x, q->state[OWN + 1] = x.y, q->state[OWN + 2] = x.z;
 }
 
-/// A ball of radius delta about a witness point lies in the other shape: no direction has less depth.
+/// A ball of radius delta about a witness point lies in the other shape: no direction has less depth. In shapes that are round enough it does at any place.
 static bool is_least(const query *q, const pls_depth *d)
 {
+    if (d->delta <= fmax(q->a->shape->inner_radius * q->a->scale, q->b->shape->inner_radius * q->b->scale)) return true;
     double enough = d->delta - proof * fmin(q->a->size, q->b->size);
-    return d->delta <= 0.0 || -pls_posed_sdf(q->a, d->on_b) >= enough || -pls_posed_sdf(q->b, d->on_a) >= enough;
+    return -pls_posed_sdf(q->a, d->on_b) >= enough || -pls_posed_sdf(q->b, d->on_a) >= enough;
 }
 
 static bool projections(const query *q, const pls_depth *start, pls_depth *d)
@@ -434,9 +465,9 @@ static solver *const table[KINDS][KINDS] = {
 //   B:           BALL           POLYTOPE       SMOOTH       SUPPORT      SDF        CONCAVE    HALF_SPACE
 /* A */
 [BALL]       = {ball_ball,     ball_polytope, ball_any,    ball_any,    ball_any,  ball_any,  on_plane},
-[POLYTOPE]   = {polytope_ball, polytopes,     incremental, incremental, from_sdfs, from_grid, on_plane},
-[SMOOTH]     = {any_ball,      incremental,   newton,      incremental, from_sdfs, from_grid, on_plane},
-[SUPPORT]    = {any_ball,      incremental,   incremental, incremental, from_sdfs, from_grid, on_plane},
+[POLYTOPE]   = {polytope_ball, polytopes,     by_features, by_features, from_sdfs, from_grid, on_plane},
+[SMOOTH]     = {any_ball,      by_features,   newton,      by_features, from_sdfs, from_grid, on_plane},
+[SUPPORT]    = {any_ball,      by_features,   by_features, by_features, from_sdfs, from_grid, on_plane},
 [SDF]        = {any_ball,      from_sdfs,     from_sdfs,   from_sdfs,   from_sdfs, from_grid, on_plane},
 [CONCAVE]    = {any_ball,      from_grid,     from_grid,   from_grid,   from_grid, from_grid, on_plane},
 [HALF_SPACE] = {NULL}, // as B only

@@ -30,15 +30,6 @@ typedef struct pls_touch
     double spread[6]; ///< second moments of the area of touch about its middle, by the area: xx, yy, zz, xy, xz, yz; all 0: a point [m^2]
 } pls_touch;
 
-/// What queries cost, for summary.json. One per thread, added up.
-typedef struct pls_narrow_counts
-{
-    uint64_t queries, iterations;
-    uint64_t restarts;  ///< warm start given up, solved cold
-    uint64_t fallbacks; ///< slower sure method
-    uint64_t failures;  ///< none converged: best bound used
-} pls_narrow_counts;
-
 /// One contact. The answer depends on poses, options and state only. Half-spaces come as B.
 /// With the default solver and PLS_FACES_POINT, `delta` is the penetration depth, or minus the distance, and the two points of the surfaces are
 /// point +- delta/2 normal (+: of A). Pairs further apart than PLS_NARROW_FAR may get any bound of their distance beyond that.

@@ -24,8 +24,7 @@ static trial try_normal(const pls_posed *a, const pls_posed *b, pls_vec3 n)
     return t;
 }
 
-/// Add e1.(H e1), e1.(H e2), e2.(H e2) of a shape, margin included (its ball's support points turn with n).
-static void add_curvature(const pls_posed *p, pls_vec3 n, const pls_vec3 e[2], double h[3])
+void pls_add_support_curvature(const pls_posed *p, pls_vec3 n, const pls_vec3 e[2], double h[3])
 {
     double d[6];
     p->shape->ops->support_gradient(p->shape, pls_posed_turn_back(p, n), d);
@@ -38,8 +37,7 @@ static void add_curvature(const pls_posed *p, pls_vec3 n, const pls_vec3 e[2], d
     h[2] += p->scale * (pls_dot(v, dv) + margin);
 }
 
-/// Two unit vectors at right angles to n and each other; in 2D the first lies in the plane.
-static void tangents(pls_vec3 n, int dimension, pls_vec3 e[2])
+void pls_tangents(pls_vec3 n, int dimension, pls_vec3 e[2])
 {
     pls_vec3 off = dimension == 2 || fabs(n.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0);
     e[0] = pls_unit(pls_cross(off, n));
@@ -81,7 +79,7 @@ void pls_smooth_depth(const pls_posed *a, const pls_posed *b, pls_vec3 normal, p
     for (int k = 0; k < MOST; ++k)
     {
         pls_vec3 e[2];
-        tangents(now.n, dimension, e);
+        pls_tangents(now.n, dimension, e);
         double g[2] = {pls_dot(now.apart, e[0]), dimension == 2 ? 0.0 : pls_dot(now.apart, e[1])}, h[3] = {-now.f, 0.0, -now.f}, step[2];
         out->iterations = k;
         double slope = sqrt(g[0] * g[0] + g[1] * g[1]);
@@ -90,8 +88,8 @@ void pls_smooth_depth(const pls_posed *a, const pls_posed *b, pls_vec3 normal, p
             out->converged = true;
             break;
         }
-        add_curvature(a, now.n, e, h);
-        add_curvature(b, pls_scale(now.n, -1.0), e, h);
+        pls_add_support_curvature(a, now.n, e, h);
+        pls_add_support_curvature(b, pls_scale(now.n, -1.0), e, h);
         newton_step(h, g, dimension, step);
         double length = sqrt(step[0] * step[0] + step[1] * step[1]), take = length > longest ? longest / length : 1.0;
         double down = g[0] * step[0] + g[1] * step[1]; // negative

@@ -11,10 +11,15 @@
 #include <string.h>
 
 // The numbers of the header: X(name in the file, member of pls_persist_header, type in the file, type in memory)
-#define HEADER_NUMBERS(X)                              \
-    X("step", step, H5T_STD_U64LE, H5T_NATIVE_UINT64)  \
-    X("time", time, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE) \
-    X("dt", dt, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
+#define HEADER_NUMBERS(X)                                                       \
+    X("step", step, H5T_STD_U64LE, H5T_NATIVE_UINT64)                           \
+    X("time", time, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)                          \
+    X("dt", dt, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)                              \
+    X("search_queries", search.queries, H5T_STD_U64LE, H5T_NATIVE_UINT64)       \
+    X("search_iterations", search.iterations, H5T_STD_U64LE, H5T_NATIVE_UINT64) \
+    X("search_restarts", search.restarts, H5T_STD_U64LE, H5T_NATIVE_UINT64)     \
+    X("search_fallbacks", search.fallbacks, H5T_STD_U64LE, H5T_NATIVE_UINT64)   \
+    X("search_failures", search.failures, H5T_STD_U64LE, H5T_NATIVE_UINT64)
 
 static hid_t file_type(pls_type type)
 {

@@ -77,6 +77,15 @@ static pls_status add_counts(pls_text *json, pls_run *run)
     return add_named_number(json, "particle_steps_per_s", bodies * steps / wall, ",\n");
 }
 
+static pls_status add_search(pls_text *json, const pls_run *run)
+{
+    const pls_narrow_counts c = pls_world_narrow_counts(run->world);
+    return pls_text_print(json,
+                          "  \"contact_search\": {\"queries\": %" PRIu64 ", \"iterations\": %" PRIu64 ", \"restarts\": %" PRIu64
+                          ", \"fallbacks\": %" PRIu64 ", \"failures\": %" PRIu64 "},\n",
+                          c.queries, c.iterations, c.restarts, c.fallbacks, c.failures);
+}
+
 /// After a failed run, or before the first step since a checkpoint, some values may not be to be had; else that is a failure.
 static pls_status is_known(const pls_run *run, pls_status outcome, pls_status status, bool *known)
 {
@@ -156,6 +165,7 @@ pls_status pls_run_write_summary(pls_run *run, pls_status outcome)
     pls_text json = {0};
     pls_status status = add_head(&json, run, outcome); // first of all: it quotes the last message
     if (status == PLS_OK) status = add_counts(&json, run);
+    if (status == PLS_OK) status = add_search(&json, run);
     if (status == PLS_OK) status = add_figures(&json, run, outcome);
     if (status == PLS_OK) status = add_observers(&json, run, outcome);
     if (status == PLS_OK) status = add_hash(&json, run, outcome);

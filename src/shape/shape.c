@@ -192,6 +192,39 @@ double pls_shape_reach(const pls_shape *shape, pls_vec3 centre)
     return radius * (1.0 + 1e-9);
 }
 
+/// Lesser radius of curvature where the normal is n, from the derivative of the support point [m].
+static double lesser_curvature_radius(const pls_shape *shape, pls_vec3 n)
+{
+    double d[6];
+    shape->ops->support_gradient(shape, n, d);
+    const pls_vec3 e = shape->dimension == 2 ? pls_vec(-n.y, n.x, 0.0)
+                                             : pls_unit(pls_cross(n, fabs(n.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0)));
+    const pls_vec3 f = pls_cross(n, e);
+    const pls_vec3 He =
+        pls_vec(d[0] * e.x + d[3] * e.y + d[4] * e.z, d[3] * e.x + d[1] * e.y + d[5] * e.z, d[4] * e.x + d[5] * e.y + d[2] * e.z);
+    const pls_vec3 Hf =
+        pls_vec(d[0] * f.x + d[3] * f.y + d[4] * f.z, d[3] * f.x + d[1] * f.y + d[5] * f.z, d[4] * f.x + d[5] * f.y + d[2] * f.z);
+    const double ee = pls_dot(e, He), ef = pls_dot(e, Hf), ff = pls_dot(f, Hf);
+    if (shape->dimension == 2) return ee;
+    return 0.5 * (ee + ff) - hypot(0.5 * (ee - ff), ef);
+}
+
+/// By Blaschke's theorem a ball as large as the least radius of curvature rolls freely inside. That is looked for along many normals, and half of it taken; what is added
+/// by a margin is certain.
+static double inner_radius_of(const pls_shape *shape)
+{
+    enum { NORMALS = 2000 };
+    static const double golden_angle = 2.3999632297286533;
+    if (!shape->convex || !shape->ops->smooth || !shape->ops->support_gradient) return shape->convex ? shape->margin : 0.0;
+    double least = INFINITY;
+    for (int k = 0; k < NORMALS; ++k)
+    {
+        const double angle = golden_angle * k, z = shape->dimension == 2 ? 0.0 : (2.0 * k + 1.0) / NORMALS - 1.0, r = sqrt(1.0 - z * z);
+        least = fmin(least, lesser_curvature_radius(shape, pls_vec(r * cos(angle), r * sin(angle), z)));
+    }
+    return shape->margin + fmax(0.0, 0.5 * least);
+}
+
 // ---- is it a distance? -------------------------------------------------------------------------------------------------------------------------------------
 
 static pls_vec3 random_point(const pls_shape *shape, pls_random *random, double margin)
@@ -325,6 +358,7 @@ static pls_status measure(pls_shape *shape, const char *name)
     PLS_TRY(guess_size(shape, name));
     find_bounds(shape);
     PLS_TRY(try_sdf(shape, name));
+    shape->inner_radius = inner_radius_of(shape);
     if (!ops->wall) return measure_mass(shape, name);
     shape->moments = pls_vec(0.0, 0.0, 0.0); // the frame of a wall is that in which it is given
     shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : pls_shape_reach(shape, shape->mass.centre);

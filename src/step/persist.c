@@ -73,7 +73,7 @@ pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
         return status;
     }
     world->persisting = made;
-    *header = (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt};
+    *header = (pls_persist_header){.step = world->step, .time = world->time, .dt = world->dt, .search = world->solids.counts};
     header->rows[PLS_TABLE_BODIES] = world->bodies.count;
     header->rows[PLS_TABLE_CONTACTS] = made->contacts.count;
     header->rows[PLS_TABLE_PAIRS] = made->pairs.count;
@@ -163,6 +163,7 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
     world->step = header->step;
     world->time = header->time;
     world->dt = header->dt;
+    world->solids.counts = header->search;
     return PLS_OK;
 }
 

@@ -16,6 +16,7 @@ typedef struct pls_persist_header
     uint64_t step;                  ///< steps done
     double time;                    ///< [s]
     double dt;                      ///< [s]
+    pls_narrow_counts search;       ///< of bodies that are not spheres, so far; not in the state hash
 } pls_persist_header;
 
 /// Start reading: makes the contact table. The world must not change until all is read.

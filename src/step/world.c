@@ -633,6 +633,8 @@ size_t pls_world_contact_count(const pls_world *world)
     return world->memory.count + solid;
 }
 
+pls_narrow_counts pls_world_narrow_counts(const pls_world *world) { return world->solids.counts; }
+
 const uint32_t *pls_world_rows_by_number(const pls_world *world, size_t *count)
 {
     *count = world->bodies.numbers;

@@ -46,6 +46,7 @@ run() { # <folder> <option...>
 
 run first --threads 1
 grep -q '"contacts": 0,' first/summary.json && complain "nothing touches: the test shows nothing"
+grep -q '"contact_search": {"queries": [1-9][0-9]*, "iterations": [1-9][0-9]*, "restarts": [0-9]*, "fallbacks": [0-9]*, "failures": 0}' first/summary.json || complain "contacts were not searched for as they should be: $(grep contact_search first/summary.json)"
 expected=$(state_of first)
 [ -n "$expected" ] || complain "there is no state hash"
 
@@ -61,6 +62,7 @@ for middle in 0.0312 0.0704 0.1101; do
     run "half-$middle" --threads 1 --set time.end=$middle
     "$PARTICLS" resume "half-$middle" --until 0.15 --threads 2 --quiet >resume.txt 2>&1 || { complain "resume at $middle failed"; cat resume.txt >&2; }
     same "half-$middle"
+    diff <(grep -v '_s"\|"threads"\|"scene_hash"' first/summary.json) <(grep -v '_s"\|"threads"\|"scene_hash"' "half-$middle/summary.json") >&2 || complain "the summary after a restart is another one"
 done
 for faces in manifold volume; do
     run "$faces-1" --threads 1 --set "contact[0].faces=$faces" --set contact[0].face_area=0.002
