@@ -64,8 +64,9 @@ void case_rolling_solids(verify_sheet *sheet)
                        "%s: acceleration down a slope of 0.3 rad, lever r - delta/2 [m/s^2]", all[k].name);
         sheet_relative(sheet, acceleration, ideal, 1e-4, "%s: acceleration, %.4g g sin(alpha) [m/s^2]", all[k].name,
                        1.0 / (1.0 + all[k].moment));
-        sheet_below(sheet, fabs(m.position.y) + fabs(m.angular_velocity.x) + fabs(m.angular_velocity.z), exactly,
-                    "%s: it rolls straight, off by [m], [rad/s]", all[k].name);
+        const double astray =
+            fabs(m.position.y / m.position.x) + (fabs(m.angular_velocity.x) + fabs(m.angular_velocity.z)) / m.angular_velocity.y;
+        sheet_below(sheet, astray, exactly, "%s: it rolls straight, goes and turns astray by, of its way and spin", all[k].name);
         verify_close(&scene);
     }
 }
