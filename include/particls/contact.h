@@ -17,9 +17,9 @@ typedef enum pls_solver {
 
 /// What the law is asked with where faces are nearly parallel.
 typedef enum pls_faces {
-    PLS_FACES_POINT,    ///< the depth, at the deepest point, which jumps as faces tilt
-    PLS_FACES_MANIFOLD, ///< a smooth maximum of the thickness of the overlap: the depth for parallel faces
-    PLS_FACES_VOLUME    ///< the volume of the overlap over `face_area`, at its centre
+    PLS_FACES_POINT, ///< the depth, at the deepest point, which jumps as faces tilt
+    PLS_FACES_MANIFOLD, ///< a smooth maximum of the thickness of the overlap: the depth for parallel faces, 3/4 of it at an edge, 3/5 at a corner
+    PLS_FACES_VOLUME ///< the volume of the overlap over `face_area`, at its centre
 } pls_faces;
 
 /// Copy `pls_default_narrow_options()` and change what you need.

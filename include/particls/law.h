@@ -25,6 +25,8 @@ typedef struct pls_material_values
 /// A batch of touching contacts. All arrays hold `count` values, are 64-byte aligned and do not overlap; `count` is a multiple of 8, at most
 /// PLS_LAW_BATCH, and padding lanes hold harmless values, so that one plain loop over 0..count, without branches on other lanes, is right and vectorises.
 /// n points from body i to body j.
+/// Where faces touch over an area, slip velocity, spring and shear force have a part along n, too: that of turning about the normal, at the radius where it slips. A law that
+/// treats the three components alike, by their length, answers for sliding and turning together.
 #define PLS_LAW_BATCH 128
 typedef struct pls_law_batch
 {

@@ -127,26 +127,50 @@ void pls_clip(pls_clipped *c, const pls_half_space *h, uint8_t label)
     drop_vertices(c, old, depth);
 }
 
-/// Triangles from one corner of the face, tetrahedra from there to the origin.
+/// Of the tetrahedron between the origin and three points: v/20 (sum of x (x) x + S (x) S), S their sum.
+static void add_second(double second[6], pls_vec3 x, double weight)
+{
+    const pls_vec3 w = pls_scale(x, weight);
+    second[0] += w.x * x.x, second[1] += w.y * x.y, second[2] += w.z * x.z;
+    second[3] += w.x * x.y, second[4] += w.x * x.z, second[5] += w.y * x.z;
+}
+
+/// Triangles from one corner of the face, tetrahedra from there to a vertex of the polytope, as thin as it is itself: from further away they would cancel, and leave noise in slivers.
 static void add_face(const pls_clipped *c, int start, uint8_t *seen, pls_clipped_measure *m)
 {
-    const pls_vec3 p = c->x[vertex_of(start)];
+    const pls_vec3 apex = c->x[0], p = pls_sub(c->x[vertex_of(start)], apex);
     const uint8_t label = c->label[start];
     int e = next_along(c, start);
     seen[start] = 1;
-    for (pls_vec3 a = c->x[vertex_of(e)]; e != start;)
+    for (pls_vec3 a = pls_sub(c->x[vertex_of(e)], apex); e != start;)
     {
         seen[e] = 1;
         e = next_along(c, e);
-        const pls_vec3 b = c->x[vertex_of(e)], s = pls_scale(pls_cross(pls_sub(a, p), pls_sub(b, p)), 0.5);
+        const pls_vec3 b = pls_sub(c->x[vertex_of(e)], apex), s = pls_scale(pls_cross(pls_sub(a, p), pls_sub(b, p)), 0.5);
         const pls_vec3 sum = pls_add(p, pls_add(a, b));
         const double v = pls_dot(p, s) / 3.0;
         m->volume += v;
         m->first = pls_add(m->first, pls_scale(sum, 0.25 * v));
+        add_second(m->second, p, 0.05 * v), add_second(m->second, a, 0.05 * v), add_second(m->second, b, 0.05 * v);
+        add_second(m->second, sum, 0.05 * v);
         m->area[label] = pls_add(m->area[label], s);
         m->area_moment[label] = pls_add(m->area_moment[label], pls_scale(pls_cross(sum, s), 1.0 / 3.0));
         a = b;
     }
+}
+
+/// Moments about the apex to those about the origin.
+static void move_moments(pls_vec3 x, pls_clipped_measure *m)
+{
+    const double V = m->volume;
+    const pls_vec3 f = m->first;
+    double *s = m->second;
+    s[0] += x.x * (2.0 * f.x + V * x.x), s[1] += x.y * (2.0 * f.y + V * x.y), s[2] += x.z * (2.0 * f.z + V * x.z);
+    s[3] += x.x * f.y + x.y * f.x + V * x.x * x.y;
+    s[4] += x.x * f.z + x.z * f.x + V * x.x * x.z;
+    s[5] += x.y * f.z + x.z * f.y + V * x.y * x.z;
+    m->first = pls_add(f, pls_scale(x, V));
+    for (int k = 0; k < PLS_CLIPPED_LABELS; ++k) m->area_moment[k] = pls_add(m->area_moment[k], pls_cross(x, m->area[k]));
 }
 
 void pls_clipped_measure_of(const pls_clipped *c, pls_clipped_measure *out)
@@ -157,4 +181,5 @@ void pls_clipped_measure_of(const pls_clipped *c, pls_clipped_measure *out)
     for (int v = 0; v < c->count; ++v)
         for (int e = 4 * v; e < 4 * v + 3; ++e)
             if (!seen[e]) add_face(c, e, seen, out);
+    if (c->count > 0) move_moments(c->x[0], out);
 }

@@ -34,6 +34,7 @@ typedef struct pls_clipped_measure
 {
     double volume;                            ///< [m^3]
     pls_vec3 first;                           ///< integral of x [m^4]
+    double second[6];                         ///< of x (x) x: xx, yy, zz, xy, xz, yz [m^5]
     pls_vec3 area[PLS_CLIPPED_LABELS];        ///< integral of the outward normal over the faces of a label [m^2]
     pls_vec3 area_moment[PLS_CLIPPED_LABELS]; ///< of x cross normal [m^3]
 } pls_clipped_measure;

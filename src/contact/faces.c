@@ -8,11 +8,12 @@
 // penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to 2e-3 of energy lost or won at tilts of 0.01 to 0.1.)
 //
 // VOLUME    energy kn W/A0. Force kn V/A0 for faces, at the centroid of the overlap. Additive: parts of a compound and triangles of a wall push with what lies over them.
-// MANIFOLD  energy kn delta^2/2 with delta = 2W/V = integral t^2 / integral t, a smooth maximum of t with neither a length nor a number of corners in it: the depth
-//           for parallel faces, 2/3 of it at an edge, 1/2 at a corner, where the force is 4/9 and 1/4 of the point law's. It acts where the weights
-//           d(delta)/d(t) = (2t - delta)/V have their middle: in the middle of parallel faces, at the edge of a wedge. A maximum over the corners of the common polygon
-//           (logarithm of a sum of exponentials, or a p-norm) jumps where one corner becomes two, and depends on a length or is no conservative force (p-norm weights do
-//           not sum to one).
+// MANIFOLD  energy kn delta^2/2 with delta = 3Q/2W, Q = integral over P of (d_A^2 + d_B^2)/2 dV, for parallel faces the integral of t^3/3 dA: delta = integral t^3 /
+//           integral t^2, a smooth maximum of t with neither a length nor a number of corners in it: the depth for parallel faces, 3/4 of it at an edge, 3/5 at a
+//           corner, where the force is 9/16 and 9/25 of the point law's. It acts where the weights d(delta)/d(t) have their middle: in the middle of parallel faces, near
+//           the edge of a wedge. What is integrated vanishes towards the rims, so that delta is smooth where sides are flush, as in a pile of equal bricks; 2W/V has a kink
+//           there (V does), and the pile would rattle across it. A maximum over the corners of the common polygon (logarithm of a sum of exponentials, or a p-norm)
+//           jumps where one corner becomes two, and depends on a length or is no conservative force (p-norm weights do not sum to one).
 //
 // The wrench of an overlap that is not flat is a force on a line and a couple about it: turning one face on the other changes their common outline. `twist` is that couple
 // by the force, some tenths of the depth at most. Undamped collisions keep energy to 1e-7 with it (to 1e-3 if it is left out; the point law: 1e-3, kn delta at the
@@ -22,6 +23,9 @@
 // moving the cores along the normal of the penetration depth is not conservative where that turns (rounded boxes in random collisions lose or gain some 1e-3 of their
 // energy, at worst several percent), while the integral over rounded edges has no closed form.
 // A half-space and a sphere or an ellipsoid: the cap in closed form. Other smooth pairs have no faces.
+//
+// All this is about the normal force. Friction and dashpots act over the same area and resist turning of one face on the other, about the normal and about axes in the
+// face; what solid_contact.c needs for that is the area's second moments (`spread`).
 
 #include "contact/faces.h"
 
@@ -50,6 +54,13 @@ typedef struct push
     double energy;
     pls_vec3 force, torque;
 } push;
+
+/// Both integrals over the overlap with what they push B by.
+typedef struct integrals
+{
+    push W; ///< of d
+    push Q; ///< of d^2
+} integrals;
 
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -173,16 +184,28 @@ static int faces_about(const body *s, const pls_clipped *P, int *list)
     return count;
 }
 
-static void add_cell(push *sum, const pls_half_space *h, const pls_clipped_measure *m, double weight)
+static pls_vec3 second_along(const double s[6], pls_vec3 n)
 {
-    const pls_vec3 moment = pls_cross(m->first, h->normal);
-    sum->energy += fabs(weight) * (h->offset * m->volume - pls_dot(h->normal, m->first));
-    sum->force = pls_add(sum->force, pls_scale(h->normal, weight * m->volume));
-    sum->torque = pls_add(sum->torque, pls_scale(moment, weight));
+    return pls_vec(s[0] * n.x + s[3] * n.y + s[4] * n.z, s[3] * n.x + s[1] * n.y + s[5] * n.z, s[4] * n.x + s[5] * n.y + s[2] * n.z);
 }
 
-/// Add |weight| times the integral of d, and what pushes B: along the normals of A's faces (weight > 0), against those of B's.
-static void add_cells(push *sum, const body *s, const pls_clipped *P, const pls_clipped_measure *whole, double weight)
+/// In a cell d = offset - n.x; gradients of d and d^2 are -n and -2 d n.
+static void add_cell(integrals *sum, const pls_half_space *h, const pls_clipped_measure *m, double weight)
+{
+    const pls_vec3 n = h->normal, across = second_along(m->second, n);
+    const double d = h->offset * m->volume - pls_dot(n, m->first);                           // integral of d
+    const pls_vec3 dx = pls_sub(pls_scale(m->first, h->offset), across);                     // of d x
+    const double dd = h->offset * d - h->offset * pls_dot(n, m->first) + pls_dot(n, across); // of d^2
+    sum->W.energy += fabs(weight) * d;
+    sum->W.force = pls_add(sum->W.force, pls_scale(n, weight * m->volume));
+    sum->W.torque = pls_add(sum->W.torque, pls_scale(pls_cross(m->first, n), weight));
+    sum->Q.energy += fabs(weight) * dd;
+    sum->Q.force = pls_add(sum->Q.force, pls_scale(n, 2.0 * weight * d));
+    sum->Q.torque = pls_add(sum->Q.torque, pls_scale(pls_cross(dx, n), 2.0 * weight));
+}
+
+/// Add |weight| times the integrals, and what pushes B: along the normals of A's faces (weight > 0), against those of B's.
+static void add_cells(integrals *sum, const body *s, const pls_clipped *P, const pls_clipped_measure *whole, double weight)
 {
     int list[PLS_MOST_FACES], count = faces_about(s, P, list);
     if (count == 1)
@@ -214,9 +237,11 @@ static void add_cells(push *sum, const body *s, const pls_clipped *P, const pls_
 /// Nothing overlaps, or less than numbers tell.
 static void no_touch(const pls_depth *depth, pls_touch *out)
 {
+    const pls_vec3 point = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
     *out = (pls_touch){.delta = fmin(depth->delta, 0.0),
                        .normal = depth->normal,
-                       .point = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5),
+                       .point = point,
+                       .middle = point,
                        .weight = 0.0,
                        .energy_delta = 0.0,
                        .depth = depth->delta};
@@ -231,6 +256,36 @@ static void put_on_line(const push *p, pls_vec3 middle, pls_vec3 *point, double 
     *twist = pls_dot(torque, p->force) / square;
 }
 
+/// Thickness is small, so that it does not matter that the moments are those of the body, not of its shadow.
+static void take_spread(const pls_clipped_measure *P, bool flat, double spread[6])
+{
+    const double V = P->volume;
+    const pls_vec3 c = pls_scale(P->first, 1.0 / V);
+    const double middle[6] = {c.x * c.x, c.y * c.y, c.z * c.z, c.x * c.y, c.x * c.z, c.y * c.z};
+    for (int k = 0; k < 6; ++k) spread[k] = flat && (k == 2 || k > 3) ? 0.0 : P->second[k] / V - middle[k];
+}
+
+/// The middle of A's surface in B, in the plane of touch through the point of the normal force. That point wanders as faces tilt: at overlaps far below the size by more than
+/// the size per radian. Friction that wandered along would turn bodies about the normal by what makes them roll, and take from its load what it gives: a box at rest on a
+/// slope would begin to waggle and walk down. The middle of an area is a matter of its outline.
+static pls_vec3 middle_of_area(const pls_clipped_measure *P, const pls_touch *t)
+{
+    const pls_vec3 area = P->area[OF_A];
+    const double square = pls_dot(area, area);
+    if (!(square > 0.0)) return t->point;
+    const pls_vec3 middle = pls_scale(pls_cross(area, P->area_moment[OF_A]), 1.0 / square);
+    const pls_vec3 apart = pls_sub(middle, t->point);
+    return pls_add(t->point, pls_sub(apart, pls_scale(t->normal, pls_dot(apart, t->normal))));
+}
+
+/// Right for evenly pressed discs, whose mean distance from the middle it is (2/3 of their radius), and to half a percent for squares.
+static double lever_of(const pls_touch *t)
+{
+    static const double of_disc = 0.94280904158206336; ///< 2/3 of the radius over the radius of gyration
+    const double *s = t->spread, all = s[0] + s[1] + s[2] - pls_dot(t->normal, second_along(s, t->normal));
+    return of_disc * sqrt(fmax(all, 0.0));
+}
+
 /// Energy kn W / A0.
 static void volume_law(const push *w, const pls_clipped_measure *P, double A0, pls_touch *out)
 {
@@ -242,19 +297,21 @@ static void volume_law(const push *w, const pls_clipped_measure *P, double A0, p
     put_on_line(w, pls_scale(P->first, 1.0 / P->volume), &out->point, &out->twist);
 }
 
-/// Energy kn delta^2 / 2, delta = 2 W / V; -dV/dx of B is the area of A's surface in B.
-static void manifold_law(const push *w, const pls_clipped_measure *P, pls_touch *out)
+/// Energy kn delta^2 / 2, delta = 3 Q / 2 W.
+static void manifold_law(const integrals *sum, const pls_clipped_measure *P, pls_touch *out)
 {
-    const double V = P->volume, delta = 2.0 * w->energy / V;
-    push slope = {.force = pls_scale(pls_sub(pls_scale(w->force, 2.0), pls_scale(P->area[OF_A], delta)), 1.0 / V),
-                  .torque = pls_scale(pls_sub(pls_scale(w->torque, 2.0), pls_scale(P->area_moment[OF_A], delta)), 1.0 / V)};
+    const push *W = &sum->W, *Q = &sum->Q;
+    const double V = P->volume, delta = 1.5 * Q->energy / W->energy;
+    push slope = {.force = pls_scale(pls_sub(pls_scale(Q->force, 1.5), pls_scale(W->force, delta)), 1.0 / W->energy),
+                  .torque = pls_scale(pls_sub(pls_scale(Q->torque, 1.5), pls_scale(W->torque, delta)), 1.0 / W->energy)};
     const double length = pls_length(slope.force);
     out->normal = pls_scale(slope.force, 1.0 / length);
     out->delta = delta * length;
     out->energy_delta = delta;
-    // d2(delta^2/2) as the overlap grows deeper over a fixed area: 1 + 3 q^2, q the variance of t by its squared mean; 1 for parallel faces, at most 7/4.
-    const double q = delta * fabs(pls_dot(P->area[OF_A], out->normal)) / V - 1.0;
-    out->weight = 1.0 + 3.0 * q * q;
+    // d2(delta^2/2) as the overlap grows deeper over a fixed area: by integrals of t^0, t and t^2 over it; 1 for parallel faces, 9/16 at an edge.
+    const double squares = 2.0 * W->energy, area = fabs(pls_dot(P->area[OF_A], out->normal));
+    const double a = delta * V / squares, b = delta * delta * area / squares;
+    out->weight = fmax(9.0 - 18.0 * a + 12.0 * a * a - 2.0 * b, 0.0);
     put_on_line(&slope, pls_scale(P->first, 1.0 / V), &out->point, &out->twist);
 }
 
@@ -282,7 +339,7 @@ static void cap_law(const pls_posed *a, const double half[3], pls_vec3 front, pl
     out->delta = volume * stretch / A0;
     out->weight = base * stretch / R / A0;
     out->energy_delta = sqrt(2.0 * out->delta * fmax(R * middle - height, 0.0));
-    out->point = pls_add(centre, pls_scale(pls_posed_turn(a, deep), middle));
+    out->point = out->middle = pls_add(centre, pls_scale(pls_posed_turn(a, deep), middle));
 }
 
 /// Sphere, disc, ellipsoid, ellipse; their half axes.
@@ -293,6 +350,14 @@ static bool is_ellipsoid(const pls_shape *s, double half[3])
 }
 
 // ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
+
+/// In 2D the overlap is a slab about the plane z = 0: what cancels between its two sides leaves rounding errors, which would push bodies out of the plane.
+static void flatten(integrals *sum, pls_clipped_measure *P)
+{
+    push *both[2] = {&sum->W, &sum->Q};
+    for (int k = 0; k < 2; ++k) both[k]->force.z = both[k]->torque.x = both[k]->torque.y = 0.0;
+    P->first.z = 0.0;
+}
 
 static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
 {
@@ -325,17 +390,45 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
     if (P.count == 0) return false;
     pls_clipped_measure m;
     pls_clipped_measure_of(&P, &m);
-    push w = {0};
+    integrals sum = {0};
     const double share = plane || facet ? 1.0 : 0.5;
-    add_cells(&w, &B, &P, &m, -share);
-    if (share < 1.0) add_cells(&w, &A, &P, &m, 1.0 - share);
-    if (!(m.volume > 0.0) || !(w.energy > 0.0)) return false;
+    add_cells(&sum, &B, &P, &m, -share);
+    if (share < 1.0) add_cells(&sum, &A, &P, &m, 1.0 - share);
+    if (!(m.volume > 0.0) || !(sum.W.energy > 0.0) || !(sum.Q.energy > 0.0)) return false;
+    if (a->shape->dimension == 2) flatten(&sum, &m);
     if (options->faces == PLS_FACES_VOLUME)
-        volume_law(&w, &m, options->face_area, out);
+        volume_law(&sum.W, &m, options->face_area, out);
     else
-        manifold_law(&w, &m, out);
-    out->point = pls_add(origin, out->point);
+        manifold_law(&sum, &m, out);
+    take_spread(&m, a->shape->dimension == 2, out->spread);
+    const bool flat = a->shape->dimension == 2;
+    out->lever = flat ? 0.0 : lever_of(out);
+    out->middle = flat ? out->point : middle_of_area(&m, out);
+    out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
     return isfinite(out->delta) && out->delta > 0.0;
+}
+
+/// Two axes at right angles to the normal, and the moments of the spread along them.
+static void spread_across(const pls_touch *t, pls_vec3 axis[2], double moment[3])
+{
+    const pls_vec3 n = t->normal;
+    axis[0] = pls_unit(fabs(n.x) < fabs(n.y) ? pls_vec(0.0, n.z, -n.y) : pls_vec(-n.z, 0.0, n.x));
+    axis[1] = pls_cross(n, axis[0]);
+    const pls_vec3 turned[2] = {second_along(t->spread, axis[0]), second_along(t->spread, axis[1])};
+    moment[0] = pls_dot(axis[0], turned[0]), moment[1] = pls_dot(axis[1], turned[1]), moment[2] = pls_dot(axis[0], turned[1]);
+}
+
+void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4])
+{
+    // Columns of the moments' Cholesky factor, times the root of two.
+    pls_vec3 axis[2];
+    double moment[3];
+    spread_across(touch, axis, moment);
+    const double first = sqrt(fmax(moment[0], 0.0)), shared = first > 0.0 ? moment[2] / first : 0.0;
+    const double second = sqrt(fmax(moment[1] - shared * shared, 0.0));
+    corner[0] = pls_scale(pls_add(pls_scale(axis[0], first), pls_scale(axis[1], shared)), M_SQRT2);
+    corner[2] = pls_scale(axis[1], M_SQRT2 * second);
+    corner[1] = pls_scale(corner[0], -1.0), corner[3] = pls_scale(corner[2], -1.0);
 }
 
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)

@@ -12,6 +12,15 @@ enum { PLS_MOST_FACES = 256 };
 /// False if the pair has no faces to speak of, always for the same pairs of shapes: the point law stands, and nothing is written.
 /// Faces have polyhedra, boxes, polygons and prisms of at most PLS_MOST_FACES faces, rounded ones only against walls: half-spaces, triangles, segments. For VOLUME on a
 /// half-space also sphere, disc, ellipsoid and ellipse.
+/// Gives the area of touch too (`spread`): that of the overlap, weighted by its thickness.
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out);
+
+/// Where two bodies touch over an area, force and point alone do not tell how they rub and damp when they turn on each other: these do.
+/// @{
+
+static inline bool pls_touch_is_point(const pls_touch *t) { return t->spread[0] == 0.0 && t->spread[1] == 0.0 && t->spread[2] == 0.0; }
+/// Four points, a quarter of the area each, that have its second moments: from `touch->point`, opposite ones in turn.
+void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4]);
+/// @}
 
 #endif

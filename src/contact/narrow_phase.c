@@ -487,9 +487,11 @@ static bool by_admm(const query *q, double tolerance, pls_depth *d)
 
 static void as_touch(const pls_depth *d, pls_touch *out)
 {
+    const pls_vec3 point = pls_scale(pls_add(d->on_a, d->on_b), 0.5);
     *out = (pls_touch){.delta = d->delta,
                        .normal = d->normal,
-                       .point = pls_scale(pls_add(d->on_a, d->on_b), 0.5),
+                       .point = point,
+                       .middle = point,
                        .weight = 1.0,
                        .energy_delta = d->delta,
                        .depth = d->delta};

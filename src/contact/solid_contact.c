@@ -6,13 +6,23 @@
 //     frame      velocities at the contact point, the spring carried into the frame of now
 //     law        as for spheres, in batches
 //     store      force and torque into the candidate's own slot
+//     rock       where bodies touch over an area, what dashpots do against rocking
 //
 // Time. Dashpots see the velocities of the end of the step, springs the displacement of the middle, as for spheres (sphere_contact_simd.c): s += dt u_t with u the relative velocity of
 // mid-step at the mid-step contact point. Spheres know that point in closed form; here it is the mean of the points (relative to each centre) of the last step and of now,
 // and the normal is the mean of the two normals, both good to second order. The spring is carried along by the smallest rotation that takes the old normal to the new one, and
 // turned about it by the angle of the pair's mean spin.
+//
+// Areas. Bodies that lie on each other with faces touch over an area (`spread` of pls_touch), on which each place rubs and damps by itself. Turning about the normal is
+// slip at a lever (`lever`): the third component of spring, slip velocity and shear force, along the normal, is that of turning, and the law treats all three as
+// one vector. So turning has the stiffness, the dashpots and the energy of the law, and shares the cone with sliding: |Fs|^2 + (couple/lever)^2 <= (mu Fn)^2, the ellipsoid by
+// which Howe & Cutkosky (1996) approximate the limit surface of sliding patches. Rocking about axes in the face: the law is asked for its normal force at four
+// points with the area's second moments (pls_touch_corners) as they approach each other, and the couple of what differs acts. For a dashpot cn that is the integral of
+// cn over the area by the area.
 
 #include "contact/solid_contact.h"
+
+#include "contact/faces.h"
 
 #include <string.h>
 
@@ -199,10 +209,15 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     const pls_law *law = &in->laws->law[pair->law];
     const pair_motion m = motion_of(in, pair);
     const pls_vec3 n = t->normal, half = pls_scale(n, law->lever_at_surface ? 0.5 * t->depth : 0.0);
-    const pls_vec3 arm_i = pls_sub(pls_add(t->point, half), m.centre_i), arm_j = pls_sub(pls_sub(t->point, half), m.centre_j);
-    pls_vec3 v = pls_sub(pls_add(m.end_v_i, pls_cross(m.end_w_i, arm_i)), pls_add(m.end_v_j, pls_cross(m.end_w_j, arm_j)));
-    const double vn = pls_dot(v, n);
+    const pls_vec3 arm_i = pls_sub(pls_add(t->middle, half), m.centre_i), arm_j = pls_sub(pls_sub(t->middle, half), m.centre_j);
+    const pls_vec3 v = pls_sub(pls_add(m.end_v_i, pls_cross(m.end_w_i, arm_i)), pls_add(m.end_v_j, pls_cross(m.end_w_j, arm_j)));
+    const pls_vec3 end_turn = pls_sub(m.end_w_i, m.end_w_j);
+    // The normal force acts as a force on a line and a couple `twist` about it; the rate at which both do work is that of the force at this approach.
+    double vn = pls_dot(v, n);
+    if (!pls_touch_is_point(t)) vn += pls_dot(pls_cross(end_turn, pls_sub(t->point, t->middle)), n) + t->twist * pls_dot(end_turn, n);
 
+    const double lever = t->lever;
+    double old_lever = lever, turning = 0.0; // turning: the spring along the normal
     pls_vec3 old_n = n, mid_i = arm_i, mid_j = arm_j, spring = pls_vec(0.0, 0.0, 0.0);
     if (!fresh)
     {
@@ -212,6 +227,12 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
         old_n = of3(memory->normal);
         mid_i = pls_scale(pls_add(old_i, arm_i), 0.5), mid_j = pls_scale(pls_add(old_j, arm_j), 0.5);
         spring = of3(memory->spring);
+        old_lever = memory->lever;
+        if (old_lever > 0.0)
+        {
+            turning = pls_dot(spring, old_n);
+            spring = pls_sub(spring, pls_scale(old_n, turning));
+        }
     }
     pls_vec3 mid_n = pls_add(n, old_n);
     const double length = pls_length(mid_n);
@@ -220,10 +241,16 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     const double turned = 0.5 * in->dt * pls_dot(pls_add(m.w_i, m.w_j), n);
     pls_vec3 step = turn_about(tilt(tangential(u, mid_n), mid_n, n), n, 0.5 * turned);
     double since = in->dt; // a contact that begins within the step has had the time since touch only
-    if (fresh && vn * in->dt > t->delta) since = t->delta / vn;
+    if (fresh && vn * in->dt > t->depth) since = t->depth / vn;
     spring = pls_add(turn_about(tilt(spring, old_n, n), n, turned), pls_scale(step, since));
 
-    const pls_vec3 slip = tangential(v, n);
+    pls_vec3 slip = tangential(v, n);
+    if (lever > 0.0)
+    {
+        turning += since * 0.5 * (old_lever + lever) * pls_dot(pls_sub(m.w_i, m.w_j), mid_n);
+        spring = pls_add(spring, pls_scale(n, turning));
+        slip = pls_add(slip, pls_scale(n, lever * pls_dot(end_turn, n)));
+    }
     work->delta[k] = t->delta;
     work->normal_velocity[k] = vn;
     work->slip_velocity[0][k] = slip.x, work->slip_velocity[1][k] = slip.y, work->slip_velocity[2][k] = slip.z;
@@ -245,12 +272,20 @@ static void store_contact(pls_solid_list *list, const pls_contact_input *in, siz
     pls_solid_memory *memory = &list->memory[c];
     const pls_touch *t = &list->touch[c];
     const pls_body_place *p = &in->place[pair->row_i];
-    const pls_vec3 n = t->normal, arm_i = pls_sub(t->point, pls_vec(p->x, p->y, p->z));
+    const pls_vec3 n = t->normal, arm_i = pls_sub(t->middle, pls_vec(p->x, p->y, p->z));
     const pair_motion m = motion_of(in, pair);
-    const pls_vec3 arm_j = pls_sub(t->point, m.centre_j);
-    const pls_vec3 shear = pls_vec(work->shear_force[0][k], work->shear_force[1][k], work->shear_force[2][k]);
+    const pls_vec3 arm_j = pls_sub(t->middle, m.centre_j);
+    const double lever = t->lever;
+    pls_vec3 shear = pls_vec(work->shear_force[0][k], work->shear_force[1][k], work->shear_force[2][k]);
+    double turning = 0.0;
+    if (lever > 0.0)
+    {
+        turning = pls_dot(shear, n);
+        shear = pls_sub(shear, pls_scale(n, turning));
+    }
     const pls_vec3 force = pls_sub(shear, pls_scale(n, work->normal_force[k]));
-    const pls_vec3 twist = pls_scale(n, t->twist * work->normal_force[k]); // on j, and against it on i
+    pls_vec3 twist = pls_scale(n, t->twist * work->normal_force[k] - lever * turning); // on j, and against it on i
+    if (!pls_touch_is_point(t)) twist = pls_add(twist, pls_scale(pls_cross(pls_sub(t->point, t->middle), n), work->normal_force[k]));
     double *slot = list->slot + c * PLS_SOLID_SLOT;
     put3(slot, force), put3(slot + 4, pls_sub(pls_cross(arm_i, force), twist));
     put3(slot + 8, pls_scale(force, -1.0)), put3(slot + 12, pls_add(pls_cross(force, arm_j), twist));
@@ -260,6 +295,69 @@ static void store_contact(pls_solid_list *list, const pls_contact_input *in, siz
     for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) memory->history[h] = work->history[h][k];
     put3(memory->normal, n);
     put3(memory->arm, arm_i);
+    memory->lever = lever;
+}
+
+/// Candidate c as one of those whose rocking is damped: four contacts of the batch from `k`, of the normal alone.
+static void frame_corners(const pls_solid_list *list, const pls_contact_input *in, size_t c, double approach, pls_contact_work *work,
+                          size_t k)
+{
+    const pls_solid_pair *pair = &list->pair[c];
+    const pls_touch *t = &list->touch[c];
+    const pair_motion m = motion_of(in, pair);
+    const pls_vec3 turn = pls_sub(m.end_w_i, m.end_w_j);
+    pls_vec3 corner[4];
+    pls_touch_corners(t, corner);
+    for (size_t p = 0; p < 4; ++p)
+    {
+        work->delta[k + p] = t->delta;
+        work->normal_velocity[k + p] = approach + pls_dot(pls_cross(turn, corner[p]), t->normal);
+        for (int a = 0; a < 3; ++a) work->slip_velocity[a][k + p] = work->spring[a][k + p] = 0.0;
+        for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) work->history[h][k + p] = list->memory[c].history[h];
+        work->effective_radius[k + p] = pls_solid_effective_radius(list, c);
+        work->effective_mass[k + p] = 1.0 / (in->load[pair->row_i].inv_mass + in->load[pair->row_j].inv_mass);
+    }
+}
+
+/// The couple of the four normal forces into the slot, and what it takes to the dashpots' power.
+static void store_rocking(pls_solid_list *list, const pls_contact_input *in, size_t c, const pls_contact_work *work, size_t k)
+{
+    const pls_touch *t = &list->touch[c];
+    const pair_motion m = motion_of(in, &list->pair[c]);
+    pls_vec3 corner[4], couple = pls_vec(0.0, 0.0, 0.0); // on j
+    pls_touch_corners(t, corner);
+    for (size_t p = 0; p < 4; p += 2)
+    {
+        const double differs = work->normal_force[k + p] - work->normal_force[k + p + 1];
+        couple = pls_add(couple, pls_scale(pls_cross(corner[p], t->normal), 0.25 * differs));
+    }
+    double *slot = list->slot + c * PLS_SOLID_SLOT;
+    const double power = pls_dot(couple, pls_sub(m.end_w_i, m.end_w_j));
+    put3(slot + 4, pls_sub(of3(slot + 4), couple)), put3(slot + 12, pls_add(of3(slot + 12), couple));
+    slot[3] += power, slot[11] += power;
+}
+
+/// Of a batch that has been answered, those that touch over an area. `approach`: normal velocities of the batch.
+static void damp_rocking(pls_solid_list *list, const pls_contact_input *in, const uint32_t *batch, size_t count, const double *approach,
+                         pls_contact_work *work)
+{
+    enum { MOST = PLS_CONTACT_BLOCK / 4 };
+    const pls_law *law = &in->laws->law[list->pair[batch[0]].law];
+    uint32_t chosen[MOST];
+    for (size_t k = 0; k < count;)
+    {
+        size_t taken = 0;
+        for (; k < count && taken < MOST; ++k)
+        {
+            if (pls_touch_is_point(&list->touch[batch[k]])) continue;
+            frame_corners(list, in, batch[k], approach[k], work, 4 * taken);
+            chosen[taken++] = batch[k];
+        }
+        if (taken == 0) return;
+        if (taken % 2) frame_corners(list, in, chosen[taken - 1], 0.0, work, 4 * taken); // padding
+        pls_contact_law(law, in->dt, (4 * taken + 7) / 8 * 8, work);
+        for (size_t p = 0; p < taken; ++p) store_rocking(list, in, chosen[p], work, 4 * p);
+    }
 }
 
 /// Ask the law of `batch` candidates, which is the same for all of them.
@@ -273,12 +371,18 @@ static void answer(pls_solid_list *list, const pls_contact_input *in, const uint
         frame_contact(list, in, c, list->memory[c].touches != PLS_SOLID_TOUCHES, work, k);
     }
     pls_contact_law(law, in->dt, (count + 7) / 8 * 8, work);
+    bool any_area = false;
     for (size_t k = 0; k < count; ++k)
     {
         store_contact(list, in, batch[k], work, k);
         list->memory[batch[k]].touches = PLS_SOLID_TOUCHES;
         list->pair[batch[k]].ended = 0;
+        any_area = any_area || !pls_touch_is_point(&list->touch[batch[k]]);
     }
+    if (!any_area) return;
+    double approach[PLS_CONTACT_BLOCK];
+    memcpy(approach, work->normal_velocity, count * sizeof *approach);
+    damp_rocking(list, in, batch, count, approach, work);
 }
 
 static void forget(pls_solid_memory *memory)
@@ -287,6 +391,7 @@ static void forget(pls_solid_memory *memory)
     memset(memory->history, 0, sizeof memory->history);
     memset(memory->normal, 0, sizeof memory->normal);
     memset(memory->arm, 0, sizeof memory->arm);
+    memory->lever = 0.0;
 }
 
 /// A contact that comes out of the shade of another goes on with that one's spring: to the two bodies it is the same contact, at another part.
@@ -303,6 +408,7 @@ static void inherit(pls_solid_list *list, size_t first, size_t last, const uint8
             memcpy(list->memory[c].history, list->memory[d].history, sizeof list->memory[c].history);
             memcpy(list->memory[c].normal, list->memory[d].normal, sizeof list->memory[c].normal);
             memcpy(list->memory[c].arm, list->memory[d].arm, sizeof list->memory[c].arm);
+            list->memory[c].lever = list->memory[d].lever;
             list->memory[c].touches = PLS_SOLID_TOUCHES;
             list->pair[d].ended = 0; // it did not end, it moved
             forget(&list->memory[d]);
@@ -379,7 +485,8 @@ pls_vec3 pls_solid_last_spring(const pls_solid_list *list, const pls_contact_inp
     const pair_motion m = motion_of(in, &list->pair[c]);
     const pls_vec3 n = of3(memory->normal), arm_i = of3(memory->arm), arm_j = pls_sub(pls_add(arm_i, m.centre_i), m.centre_j);
     pls_vec3 u = pls_sub(pls_add(m.v_i, pls_cross(m.w_i, arm_i)), pls_add(m.v_j, pls_cross(m.w_j, arm_j)));
-    return pls_add(of3(memory->spring), pls_scale(tangential(u, n), 0.5 * in->dt));
+    const pls_vec3 slip = pls_add(tangential(u, n), pls_scale(n, memory->lever * pls_dot(pls_sub(m.w_i, m.w_j), n)));
+    return pls_add(of3(memory->spring), pls_scale(slip, 0.5 * in->dt));
 }
 
 static double equal_radius(const pls_posed *p)

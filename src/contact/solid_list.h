@@ -32,10 +32,11 @@ typedef struct pls_solid_memory
     uint32_t part_i, part_j;
     uint32_t touches; ///< at the last step
     uint32_t spare;
-    double spring[3];                    ///< tangential spring [m]
+    double spring[3];                    ///< tangential spring; along the normal: what turning on an area of touch has loaded [m]
     double history[PLS_LAW_MAX_HISTORY]; ///< the law's own numbers
     double normal[3];                    ///< at the last step, from i to j
-    double arm[3];                       ///< from the centre of i to the contact point at the last step [m]
+    double arm[3];                       ///< from the centre of i to where friction acted at the last step [m]
+    double lever;                        ///< at which turning about the normal slips, at the last step; 0: touched at a point [m]
     pls_pair_state state;
 } pls_solid_memory;
 

@@ -22,8 +22,9 @@ typedef struct pls_body_rates
 } pls_body_rates;
 
 pls_contact_rate pls_contact_rate_of(const pls_world *world, size_t candidate);
-/// The same of a candidate of solids that touches.
-pls_contact_rate pls_solid_rate_of(const pls_world *world, size_t candidate);
+enum { PLS_SOLID_RATES = 4 };
+/// The same of a candidate of solids that touches: one, or four that have a quarter each and resist rocking and turning as its area of touch does. Returns how many.
+int pls_solid_rates_of(const pls_world *world, size_t candidate, pls_contact_rate rates[PLS_SOLID_RATES]);
 
 /// Root of the inverse tensor of inertia of a body, world frame: xx, yy, zz, xy, xz, yz [1/sqrt(kg m^2)]; 2D: only zz.
 void pls_root_inverse_inertia(const pls_world *world, uint32_t row, double out[6]);

@@ -63,7 +63,6 @@ static void add_rate(const pls_world *world, uint32_t row, const pls_contact_rat
     pls_vec3 arm = row == t->i ? t->arm_i : t->arm_j;
     add_contact(rates->stiffness, d, t->n, arm, root_mass, root_inertia, weight * t->k.kn, weight * t->k.kt);
     add_contact(rates->damping, d, t->n, arm, root_mass, root_inertia, weight * t->k.cn, weight * t->k.ct);
-    ++rates->contacts;
 }
 
 static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, const double root_inertia[6], pls_body_rates *rates)
@@ -71,6 +70,7 @@ static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, 
     if (!pls_pair_touches(&world->list, entry >> 1)) return;
     pls_contact_rate t = pls_contact_rate_of(world, entry >> 1);
     add_rate(world, row, &t, root_inertia, rates);
+    ++rates->contacts;
 }
 
 static void add_solids(const pls_world *world, uint32_t row, const double root_inertia[6], pls_body_rates *rates)
@@ -79,8 +79,10 @@ static void add_solids(const pls_world *world, uint32_t row, const double root_i
     for (uint32_t k = list->start[row]; k < list->start[row + 1]; ++k)
     {
         if (list->memory[list->entry[k] >> 1].touches != PLS_SOLID_TOUCHES) continue;
-        pls_contact_rate t = pls_solid_rate_of(world, list->entry[k] >> 1);
-        add_rate(world, row, &t, root_inertia, rates);
+        pls_contact_rate t[PLS_SOLID_RATES];
+        const int count = pls_solid_rates_of(world, list->entry[k] >> 1, t);
+        for (int p = 0; p < count; ++p) add_rate(world, row, &t[p], root_inertia, rates);
+        ++rates->contacts;
     }
 }
 

@@ -51,10 +51,11 @@ static packed_contact pack(const pls_bodies *b, const pls_contact_rate *t)
                             .tangential = {(float)t->k.kt, (float)t->k.ct}};
 }
 
-static void add(whole *w, const pls_bodies *b, const pls_contact_rate *t, int *contacts)
+/// A contact in `count` pieces.
+static void add(whole *w, const pls_bodies *b, const pls_contact_rate *t, int count, int *contacts)
 {
     if (b->load[t->i].inv_mass == 0.0 && b->load[t->j].inv_mass == 0.0) return; // neither moves
-    w->packed[w->contacts++] = pack(b, t);
+    for (int k = 0; k < count; ++k) w->packed[w->contacts++] = pack(b, &t[k]);
     ++contacts[t->i];
     ++contacts[t->j];
 }
@@ -66,7 +67,7 @@ static pls_status whole_make(const pls_world *world, int coordination, whole *w)
     int *contacts = NULL;
     w->rows = b->count;
     w->dimension = world->def.dimension;
-    size_t touching = pls_pair_list_touching(list) + pls_solid_list_touching(&world->solids);
+    size_t touching = pls_pair_list_touching(list) + PLS_SOLID_RATES * pls_solid_list_touching(&world->solids);
     PLS_TRY(pls_allocate(&w->packed, touching, sizeof *w->packed, "contacts of the stable step"));
     PLS_TRY(pls_allocate(&w->root, w->rows, sizeof *w->root, "the stable step"));
     PLS_TRY(pls_allocate(&w->missing, w->rows, sizeof *w->missing, "the stable step"));
@@ -75,13 +76,14 @@ static pls_status whole_make(const pls_world *world, int coordination, whole *w)
     {
         if (!pls_pair_touches(list, c)) continue;
         pls_contact_rate t = pls_contact_rate_of(world, c);
-        add(w, b, &t, contacts);
+        add(w, b, &t, 1, contacts);
     }
     for (size_t c = 0; c < world->solids.count; ++c)
     {
         if (world->solids.memory[c].touches != PLS_SOLID_TOUCHES) continue;
-        pls_contact_rate t = pls_solid_rate_of(world, c);
-        add(w, b, &t, contacts);
+        pls_contact_rate t[PLS_SOLID_RATES];
+        const int pieces = pls_solid_rates_of(world, c, t);
+        add(w, b, t, pieces, contacts);
     }
     for (uint32_t row = 0; row < w->rows; ++row)
     {

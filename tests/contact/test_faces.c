@@ -80,8 +80,8 @@ static void a_box_on_a_plane_displaces_what_is_below(void **state)
         assert_near(t.point.z, -d / 3.0, 1e-12);
         assert_near(t.point.x, (up * c - side * s) / 3.0, 1e-12);
         t = touch_of(&p, &below, PLS_FACES_MANIFOLD, 0.0);
-        assert_near(t.energy_delta, 2.0 / 3.0 * d, 1e-12);
-        assert_near(t.delta, 4.0 / 9.0 * d, 1e-11);
+        assert_near(t.energy_delta, 3.0 / 4.0 * d, 1e-12);
+        assert_near(t.delta, 9.0 / 16.0 * d, 1e-11);
         assert_near(t.point.x, 0.0, 1e-9); // at the edge
     }
     pls_shape_free(b);
@@ -106,8 +106,8 @@ static void a_tetrahedrons_corner_in_a_plane_and_in_a_box(void **state)
     assert_near(touch.energy_delta, sqrt(2.0 * touch.delta * part / 4.0), 1e-12); // centroid at a quarter of the height
     const pls_posed block = at(slab, pls_vec(0, 0, -1.0), pls_quat_identity());
     touch = touch_of(&p, &below, PLS_FACES_MANIFOLD, 1.0);
-    assert_near(touch.energy_delta, 0.5 * part, 1e-12);
-    assert_near(touch.delta, 0.25 * part, 1e-11);
+    assert_near(touch.energy_delta, 0.6 * part, 1e-12);
+    assert_near(touch.delta, 0.36 * part, 1e-11);
     assert_vec_near(pls_sub(touch.point, pls_add(corner[3], lift)), pls_vec(0, 0, touch.point.z - corner[3].z - lift.z), 1e-9);
     // The box's own share of force and energy are half of the plane's; the tetrahedron's is left to Monte Carlo.
     touch = touch_of(&p, &block, PLS_FACES_VOLUME, 1.0);
@@ -133,7 +133,9 @@ static void a_box_in_the_middle_of_a_larger_one(void **state)
     assert_vec_near(t.normal, pls_vec(0, 0, 1), 1e-12);
     assert_vec_near(pls_sub(t.point, q.position), pls_vec(0, 0, t.point.z - q.position.z), 1e-12);
     t = touch_of(&p, &q, PLS_FACES_MANIFOLD, 0.0);
-    assert_near(t.energy_delta, (flat + rim) / V, 1e-14);
+    // Integrals of d^2: a b d^3/3 of the large box, of the small one that of 2 s times what is deeper than s.
+    const double of_large = a * b * pow(d, 3.0) / 3.0, of_small = of_large - (a + b) * pow(d, 4.0) / 3.0 + 0.4 * pow(d, 5.0);
+    assert_near(t.energy_delta, 1.5 * (of_large + of_small) / (flat + rim), 1e-13);
     pls_shape_free(small), pls_shape_free(large);
 }
 
@@ -275,7 +277,7 @@ static void pairs_without_faces_are_left_alone(void **state)
 
 typedef struct sampled
 {
-    double V, W;
+    double V, W, Q;         ///< integrals of 1, of d and of d^2
     pls_vec3 force, torque; ///< about the origin
 } sampled;
 
@@ -311,7 +313,7 @@ static sampled sample(const pls_posed *a, const pls_posed *b, int m, pls_vec3 *l
                 const double db = -pls_posed_sdf(b, x);
                 if (db < 0.0) continue;
                 l = pls_vec(fmin(l.x, x.x), fmin(l.y, x.y), fmin(l.z, x.z)), h = pls_vec(fmax(h.x, x.x), fmax(h.y, x.y), fmax(h.z, x.z));
-                s.V += cell, s.W += 0.5 * cell * (da + db);
+                s.V += cell, s.W += 0.5 * cell * (da + db), s.Q += 0.5 * cell * (da * da + db * db);
                 const pls_vec3 f = pls_scale(pls_sub(pls_posed_gradient(a, x), pls_posed_gradient(b, x)), 0.5 * cell);
                 s.force = pls_add(s.force, f), s.torque = pls_add(s.torque, pls_cross(x, f));
             }
@@ -356,7 +358,7 @@ static void random_pairs_agree_with_monte_carlo(void **state)
         const sampled s = sample(&p, &q, dimension == 3 ? 80 : 800, &low, &high);
         const pls_touch v = touch_of(&p, &q, PLS_FACES_VOLUME, 1.0), m = touch_of(&p, &q, PLS_FACES_MANIFOLD, 1.0);
         assert_near(v.energy_delta / sqrt(2 * s.W), 1.0, 5e-3);
-        assert_near(m.energy_delta / (2 * s.W / s.V), 1.0, 5e-3);
+        assert_near(m.energy_delta / (1.5 * s.Q / s.W), 1.0, 5e-3);
         const double F = pls_length(s.force);
         assert_near(v.delta / F, 1.0, 5e-3);
         assert_vec_near(v.normal, pls_scale(s.force, 1 / F), 1e-2);
@@ -430,13 +432,82 @@ static void forces_are_the_gradient_of_the_energy(void **state)
         }
 }
 
+// ---- the area of touch ----------------------------------------------------------------------------------------------------------------------------------
+
+static double moment(const pls_touch *t, pls_vec3 e)
+{
+    const double *s = t->spread;
+    return s[0] * e.x * e.x + s[1] * e.y * e.y + s[2] * e.z * e.z + 2.0 * (s[3] * e.x * e.y + s[4] * e.x * e.z + s[5] * e.y * e.z);
+}
+
+/// A rectangle of edges a, b has moments a^2/12, b^2/12 along its edges; the corners of its spread have them too.
+static void the_area_of_touch_has_the_moments_of_the_face(void **state)
+{
+    (void)state;
+    pls_shape *b = solids_box(3, 0.5, 0.3, 0.4, 0.0), *ground = solids_plane(3), *flat = solids_box(2, 0.5, 0.3, 1.0, 0.0),
+              *line = solids_plane(2);
+    const pls_quat turn = solids_turn(pls_vec(0, 0, 1), 0.4), lean = solids_turn(pls_unit(pls_vec(1, 2, 0)), 0.7);
+    const pls_posed slope = at(ground, pls_vec(0, 0, 0), lean);
+    const pls_posed p = at(b, pls_rotate(lean, pls_vec(2.0, 1.0, 0.399)), pls_quat_multiply(lean, turn));
+    const pls_vec3 edge[2] = {pls_rotate(lean, pls_rotate(turn, pls_vec(1, 0, 0))), pls_rotate(lean, pls_rotate(turn, pls_vec(0, 1, 0)))};
+    for (pls_faces faces = PLS_FACES_MANIFOLD; faces <= PLS_FACES_VOLUME; ++faces)
+    {
+        const pls_touch t = touch_of(&p, &slope, faces, 1.0);
+        assert_near(moment(&t, edge[0]), 1.0 / 12.0, 1e-11);
+        assert_near(moment(&t, edge[1]), 0.36 / 12.0, 1e-11);
+        assert_near(t.lever, sqrt(8.0 / 9.0 * 1.36 / 12.0), 1e-11);
+        pls_vec3 corner[4];
+        pls_touch_corners(&t, corner);
+        for (int k = 0; k < 2; ++k)
+        {
+            double sum = 0.0, mixed = 0.0;
+            for (int c = 0; c < 4; ++c)
+                sum += 0.25 * pow(pls_dot(corner[c], edge[k]), 2.0),
+                    mixed += 0.25 * pls_dot(corner[c], edge[0]) * pls_dot(corner[c], edge[1]);
+            assert_near(sum, k == 0 ? 1.0 / 12.0 : 0.36 / 12.0, 1e-11);
+            assert_near(mixed, 0.0, 1e-11);
+            assert_near(pls_dot(corner[k], t.normal), 0.0, 1e-12);
+        }
+    }
+    const pls_posed q = at(flat, pls_vec(0.3, 0.299, 0), pls_quat_identity()), below = at(line, pls_vec(0, 0, 0), pls_quat_identity());
+    const pls_touch t = touch_of(&q, &below, PLS_FACES_MANIFOLD, 0.0);
+    assert_near(t.spread[0], 1.0 / 12.0, 1e-12);
+    assert_true(t.lever == 0.0 && t.spread[2] == 0.0 && t.spread[4] == 0.0 && t.spread[5] == 0.0);
+    pls_shape_free(b), pls_shape_free(ground), pls_shape_free(flat), pls_shape_free(line);
+}
+
+/// A disc pressed evenly resists turning like mu N at 2/3 of its radius, a square of edge a at (sqrt 2 + asinh 1)/6 a.
+static void the_lever_is_the_mean_distance_of_discs_and_squares(void **state)
+{
+    (void)state;
+    enum { SIDES = 100 };
+    pls_vec3 points[2 * SIDES];
+    for (int k = 0; k < 2 * SIDES; ++k)
+        points[k] = pls_vec(0.5 * cos(2.0 * M_PI * k / SIDES), 0.5 * sin(2.0 * M_PI * k / SIDES), k < SIDES ? -0.2 : 0.2);
+    pls_shape *disc = solids_hull(3, points, 2 * SIDES, 0.0), *square = solids_box(3, 0.5, 0.5, 0.2, 0.0), *ground = solids_plane(3);
+    const pls_posed below = at(ground, pls_vec(0, 0, 0), pls_quat_identity());
+    pls_posed p = at(disc, pls_vec(0, 0, 0.199), disc->principal);
+    pls_touch t = touch_of(&p, &below, PLS_FACES_MANIFOLD, 0.0);
+    assert_near(t.lever, 0.5 * 2.0 / 3.0, 1e-3);
+    p = at(square, pls_vec(0, 0, 0.199), pls_quat_identity());
+    t = touch_of(&p, &below, PLS_FACES_MANIFOLD, 0.0);
+    assert_near(t.lever / ((sqrt(2.0) + asinh(1.0)) / 6.0), 1.0, 7e-3);
+    pls_shape_free(disc), pls_shape_free(square), pls_shape_free(ground);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_on_a_plane_displaces_what_is_below), cmocka_unit_test(a_tetrahedrons_corner_in_a_plane_and_in_a_box),
-        cmocka_unit_test(a_box_in_the_middle_of_a_larger_one),      cmocka_unit_test(caps_of_spheres_and_ellipsoids),
-        cmocka_unit_test(facets_of_a_floor_add_up_to_a_plane),      cmocka_unit_test(pairs_without_faces_are_left_alone),
-        cmocka_unit_test(random_pairs_agree_with_monte_carlo),      cmocka_unit_test(forces_are_the_gradient_of_the_energy),
+        cmocka_unit_test(a_box_on_a_plane_displaces_what_is_below),
+        cmocka_unit_test(a_tetrahedrons_corner_in_a_plane_and_in_a_box),
+        cmocka_unit_test(a_box_in_the_middle_of_a_larger_one),
+        cmocka_unit_test(caps_of_spheres_and_ellipsoids),
+        cmocka_unit_test(facets_of_a_floor_add_up_to_a_plane),
+        cmocka_unit_test(pairs_without_faces_are_left_alone),
+        cmocka_unit_test(random_pairs_agree_with_monte_carlo),
+        cmocka_unit_test(forces_are_the_gradient_of_the_energy),
+        cmocka_unit_test(the_area_of_touch_has_the_moments_of_the_face),
+        cmocka_unit_test(the_lever_is_the_mean_distance_of_discs_and_squares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,7 +15,7 @@ particls=$build/bin/particls
 figures=$root/docs/figures
 page=$root/docs/verification.md
 
-for needed in "$program" "$build/tests/prove/prove_narrow" "$particls" "$build"/tests/determinism/test_{threads,lists,restart,steps}; do
+for needed in "$program" "$build/tests/prove/prove_narrow" "$particls" "$build"/tests/determinism/test_{threads,lists,restart,steps,solid_restart}; do
     [ -x "$needed" ] || { echo "prove.sh: $needed is missing: run make build first" >&2; exit 2; }
 done
 command -v gnuplot >/dev/null || { echo "prove.sh: gnuplot is missing: apt-get install gnuplot-nox" >&2; exit 2; }
@@ -54,6 +54,7 @@ equal_bits() # <test of determinism> <what is compared>
 equal_bits threads "threads: 1, 2, 3, 4"
 equal_bits lists "skin: 0.1, 1, 3 times its own; order in memory: sorted or not"
 equal_bits restart "restart after 1 to 300 steps, ten moments"
+equal_bits solid_restart "restart of a pile of all shapes, three moments"
 equal_bits steps "instruction set: v2, v3, v4; one run, pieces, single steps"
 
 mkdir "$scratch/kill"
@@ -131,7 +132,7 @@ TEXT
 The same input gives the same bits. Compared are hashes over the state of all bodies, contacts and states, several times along the way of heaps of
 several hundred to a few thousand spheres (\`tests/determinism\`): loose ones with radii 1 : 2.5, in which a sphere grows and a state drives the law; dense ones
 without states, of equal spheres and of two sizes 1 : 2.5, in which whole vectors of contacts touch and steps run into each other; between walls and in
-periodic boxes, in 2D and 3D.
+periodic boxes, in 2D and 3D; and piles of grains of all shapes in a box.
 
 | compared | claim | equal |
 |---|---|---|

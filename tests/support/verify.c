@@ -2,6 +2,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -57,6 +58,65 @@ static pls_shape_id add_shape(pls_world *world, const char *shape, const verify_
     return id;
 }
 
+/// "box", "box 2", "box 3": the first that is free.
+static void free_name(const verify_scene *scene, const char *shape, char name[PLS_NAME_SIZE])
+{
+    snprintf(name, PLS_NAME_SIZE, "%s", shape);
+    for (int k = 2; pls_world_find_shape(scene->world, name).index1; ++k) snprintf(name, PLS_NAME_SIZE, "%s %d", shape, k);
+}
+
+pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values)
+{
+    pls_shape_id id;
+    char name[PLS_NAME_SIZE];
+    free_name(scene, shape, name);
+    MUST(pls_world_add_shape(scene->world, name, verify_shape(shape), values, &id));
+    return id;
+}
+
+static pls_shape_id use_shape(const verify_scene *scene, const char *ops, const pls_shape_input *input)
+{
+    pls_shape *shape;
+    pls_shape_id id;
+    char name[PLS_NAME_SIZE];
+    free_name(scene, ops, name);
+    MUST(pls_shape_make(verify_shape(ops), scene->dimension, input, name, &shape));
+    MUST(pls_world_use_shape(scene->world, name, shape, &id));
+    pls_shape_free(shape);
+    return id;
+}
+
+pls_shape_id verify_add_hull(const verify_scene *scene, const pls_vec3 *points, size_t count)
+{
+    const double sharp[PLS_MAX_PARAMETERS] = {0};
+    return use_shape(scene, scene->dimension == 3 ? "polyhedron" : "polygon",
+                     &(pls_shape_input){.values = sharp, .points = points, .point_count = count});
+}
+
+pls_shape_id verify_add_dumbbell(const verify_scene *scene, double radius, double distance)
+{
+    pls_shape *ball;
+    MUST(pls_shape_make(verify_shape("sphere"), scene->dimension, &(pls_shape_input){.values = &radius}, "ball", &ball));
+    pls_shape_part parts[2];
+    for (int k = 0; k < 2; ++k)
+        parts[k] = (pls_shape_part){.shape = ball,
+                                    .position = pls_vec(k == 0 ? -0.5 * distance : 0.5 * distance, 0.0, 0.0),
+                                    .orientation = pls_quat_identity(),
+                                    .scale = 1.0};
+    const double none[PLS_MAX_PARAMETERS] = {0};
+    pls_shape_id id = use_shape(scene, "compound", &(pls_shape_input){.values = none, .parts = parts, .part_count = 2});
+    pls_shape_free(ball);
+    return id;
+}
+
+void verify_set_faces(const verify_scene *scene, pls_faces faces, double area)
+{
+    pls_narrow_options options = pls_default_narrow_options();
+    options.faces = faces;
+    options.face_area = area;
+    MUST(pls_world_set_narrow_options(scene->world, scene->grain, scene->grain, &options));
+}
+
 verify_scene verify_open(const pls_world_def *def, const char *law, const verify_value *values)
 {
     verify_scene scene = {.dimension = def->dimension};
@@ -88,6 +148,15 @@ pls_body_def verify_ball_def(const verify_scene *scene, double radius, double ma
     def.scale = radius;
     def.mass = mass;
     def.inertia = pls_vec(inertia, inertia, inertia);
+    return def;
+}
+
+pls_body_def verify_body_def(const verify_scene *scene, pls_shape_id shape, pls_vec3 position)
+{
+    pls_body_def def = pls_default_body_def();
+    def.shape = shape;
+    def.material = scene->grain;
+    def.position = position;
     return def;
 }
 

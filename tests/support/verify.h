@@ -1,4 +1,4 @@
-// verify.h -- small helpers with which tests build worlds of spheres and planes. A failing call of the library fails the running test.
+// verify.h -- small helpers with which tests build worlds. A failing call of the library fails the running test.
 #ifndef PLS_TESTS_SUPPORT_VERIFY_H
 #define PLS_TESTS_SUPPORT_VERIFY_H
 
@@ -32,6 +32,17 @@ typedef struct verify_scene
 verify_scene verify_open(const pls_world_def *def, const char *law, const verify_value *values);
 void verify_close(verify_scene *scene);
 void verify_set_law(pls_world *world, pls_material_id a, pls_material_id b, const char *law, const verify_value *values);
+
+/// A built-in shape with all of its numbers, in the order of its table.
+pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values);
+/// The convex hull of points.
+pls_shape_id verify_add_hull(const verify_scene *scene, const pls_vec3 *points, size_t count);
+/// A compound of two spheres (2D: discs) on the x axis.
+pls_shape_id verify_add_dumbbell(const verify_scene *scene, double radius, double distance);
+/// How contacts of faces are told to the law. `area` is of PLS_FACES_VOLUME.
+void verify_set_faces(const verify_scene *scene, pls_faces faces, double area);
+/// A body of the material's density 1 at rest.
+pls_body_def verify_body_def(const verify_scene *scene, pls_shape_id shape, pls_vec3 position);
 
 /// Body definition of a solid sphere (2D: disc) of this radius and mass.
 pls_body_def verify_ball_def(const verify_scene *scene, double radius, double mass, pls_vec3 position, pls_vec3 velocity);
