@@ -115,9 +115,8 @@ static pls_status set_law(pls_world *world, pls_material_id material, bool point
         values[place] = given[k].value;
     }
     PLS_TRY(pls_world_set_law(world, material, material, *law, values));
-    if (point) return PLS_OK;
     pls_narrow_options narrow = pls_default_narrow_options();
-    narrow.faces = PLS_FACES_VOLUME;
+    narrow.faces = point ? PLS_FACES_POINT : PLS_FACES_VOLUME;
     narrow.face_area = face_area;
     return pls_world_set_narrow_options(world, material, material, &narrow);
 }

@@ -34,7 +34,7 @@ typedef struct pls_narrow_options
 
 static inline pls_narrow_options pls_default_narrow_options(void)
 {
-    pls_narrow_options options = {PLS_SOLVER_DEPTH, PLS_FACES_POINT, 0.0, 1e-6};
+    pls_narrow_options options = {PLS_SOLVER_DEPTH, PLS_FACES_MANIFOLD, 0.0, 1e-6};
     return options;
 }
 

@@ -96,7 +96,10 @@ static pls_status set_narrow_options(pls_builder *b, const pls_scene_contact *co
     pls_narrow_options options = pls_default_narrow_options();
     const char *faces = pls_node_get(contact->node, "faces")->text;
     options.solver = strcmp(pls_node_get(contact->node, "solver")->text, "admm") == 0 ? PLS_SOLVER_ADMM : PLS_SOLVER_DEPTH;
-    options.faces = strcmp(faces, "volume") == 0 ? PLS_FACES_VOLUME : strcmp(faces, "manifold") == 0 ? PLS_FACES_MANIFOLD : PLS_FACES_POINT;
+    if (strcmp(faces, "point") == 0 || (strcmp(faces, "auto") == 0 && options.solver == PLS_SOLVER_ADMM))
+        options.faces = PLS_FACES_POINT;
+    else
+        options.faces = strcmp(faces, "volume") == 0 ? PLS_FACES_VOLUME : PLS_FACES_MANIFOLD;
     options.face_area = pls_scene_number(contact->node, "face_area", 0.0);
     options.tolerance = pls_scene_number(contact->node, "tolerance", options.tolerance);
     return pls_world_set_narrow_options(b->world, b->materials[i], b->materials[j], &options);

@@ -207,9 +207,10 @@ static const pls_key keys[] = {
     {"contact", "solver", PLS_KEY_WORD, 0, 0, "depth|admm", NULL, "", "depth", ANY,
      "overlap of shapes that are not spheres: the penetration depth, or P1 eq. 14 by ADMM (not conservative where edges and corners "
      "overlap)"},
-    {"contact", "faces", PLS_KEY_WORD, 0, 0, "point|manifold|volume", NULL, "", "point", ANY,
-     "where faces lie on each other: the force acts at the deepest point, follows a smooth maximum of the overlap's thickness, or is the "
-     "volume of the overlap times k / face_area, at its centre"},
+    {"contact", "faces", PLS_KEY_WORD, 0, 0, "auto|point|manifold|volume", NULL, "", "auto", ANY,
+     "where faces lie on each other: the force acts at the deepest point (quickest; faces rattle), follows a smooth maximum of the "
+     "overlap's "
+     "thickness, or is the volume of the overlap times k / face_area, at its centre. `auto`: `manifold`; with `solver: admm` `point`"},
     {"contact", "face_area", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m^2", NULL, POSITIVE,
      "area over which the stiffness of the law acts with `faces: volume` (2D: length [m])"},
     {"contact", "tolerance", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "1e-6", 0, 0.1,

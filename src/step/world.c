@@ -270,7 +270,8 @@ pls_status pls_world_set_narrow_options(pls_world *world, pls_material_id a, pls
         return pls_fail(PLS_INVALID_ARGUMENT, "the volume law needs face_area, an area over which the law's stiffness acts [m^2]; it is %g",
                         options->face_area);
     if (options->solver == PLS_SOLVER_ADMM && options->faces != PLS_FACES_POINT)
-        return pls_fail(PLS_INVALID_ARGUMENT, "solver admm gives one point per contact; faces: manifold or volume need solver depth");
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "solver admm gives one point per contact: set faces to point; manifold and volume need solver depth");
     if (!(options->tolerance > 0.0 && options->tolerance < 0.1))
         return pls_fail(PLS_INVALID_ARGUMENT, "the solver's tolerance is %g; it must lie between 0 and 0.1", options->tolerance);
     PLS_TRY(pls_neighbours_detach(world));

@@ -64,7 +64,7 @@ for middle in 0.0312 0.0704 0.1101; do
     same "half-$middle"
     diff <(grep -v '_s"\|"threads"\|"scene_hash"' first/summary.json) <(grep -v '_s"\|"threads"\|"scene_hash"' "half-$middle/summary.json") >&2 || complain "the summary after a restart is another one"
 done
-for faces in manifold volume; do
+for faces in point volume; do
     run "$faces-1" --threads 1 --set "contact[0].faces=$faces" --set contact[0].face_area=0.002
     run "$faces-2" --threads 2 --set "contact[0].faces=$faces" --set contact[0].face_area=0.002 --set neighbours.skin=0.002
     [ "$(state_of "$faces-1")" = "$(state_of "$faces-2")" ] || complain "faces: $faces depends on threads or skin"

@@ -124,6 +124,7 @@ typedef struct memory
 static memory memory_of(pls_solver solver)
 {
     memory m = {.options = pls_default_narrow_options()};
+    m.options.faces = PLS_FACES_POINT;
     m.options.solver = solver;
     m.options.tolerance = depth_tolerance;
     return m;

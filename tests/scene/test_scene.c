@@ -139,7 +139,7 @@ static void the_used_scene_has_values_in_place_of_expressions_and_defaults(void 
     char *text;
     assert_int_equal(pls_scene_used_text(scene, &text), PLS_OK);
     assert_non_null(strstr(text, "vars: {kn: 100000, ks: 50000, omega: 6.283185307179586}"));
-    assert_non_null(strstr(text, "law: viscoelastic, lever: contact_point, solver: depth, faces: point, tolerance: "));
+    assert_non_null(strstr(text, "law: viscoelastic, lever: contact_point, solver: depth, faces: auto, tolerance: "));
     assert_non_null(strstr(text, "kn: 100000, ks: 50000, cn: 1"));
     assert_non_null(strstr(text, "time: {end: 1, dt: auto, safety: 0.5, allow_unstable: false}"));
     assert_non_null(strstr(text, "neighbours: {skin: auto, reorder: true}"));

@@ -4,8 +4,6 @@
 #include "base/random.h"
 #include "support/grains.h"
 
-static const double pi = 3.14159265358979323846;
-
 static pls_vec3 random_vector(pls_random *random)
 {
     const double x = pls_random_normal(random), y = pls_random_normal(random), z = pls_random_normal(random);

@@ -9,7 +9,7 @@ enum { LAWS = 2 };
 static const pls_faces laws[LAWS] = {PLS_FACES_MANIFOLD, PLS_FACES_VOLUME};
 static const char *const law_name[LAWS] = {"manifold", "volume"};
 
-static const double gravity = 10.0, kn = 1e5, ks = 5e4;
+static const double gravity = 10.0, kn = 1e5;
 static const pls_vec3 half = {0.5, 0.4, 0.3}; ///< of the box; 2D: the first two
 static const double size = 1.0;
 
