@@ -72,7 +72,7 @@ static void boxes(void **state)
 static void ellipsoids(void **state)
 {
     (void)state;
-    const double a = 1.0, b = 0.6, c = 0.3, V = 4.0 / 3.0 * M_PI * a * b * c, A = M_PI * a * b, values[3] = {a, b, c};
+    const double a = 1.0, b = 0.6, c = 0.3, V = 4.0 / 3.0 * M_PI * a * b * c, A = M_PI * a * b, values[4] = {a, b, c, 0.0};
     const pls_mass_properties known = {.volume = V, .inertia = {V / 5 * (b * b + c * c), V / 5 * (a * a + c * c), V / 5 * (a * a + b * b)}};
     check(&pls_ellipsoid_shape, 3, values, &known);
     check(&pls_ellipsoid_shape, 2, values, &(pls_mass_properties){.volume = A, .inertia = {[2] = A / 4 * (a * a + b * b)}});
