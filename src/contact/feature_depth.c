@@ -198,13 +198,13 @@ static void add_curvature(const side *s, pls_vec3 n, const pls_vec3 e[2], double
 static void to_corner(side *s, uint32_t v) { s->kind = CORNER, s->v[0] = v; }
 static void to_edge(side *s, uint32_t v, uint32_t w) { s->kind = EDGE, s->v[0] = v, s->v[1] = w; }
 
-/// The face at an edge that looks along m most.
+/// The face at an edge that looks along m most. In 2D edges are faces.
 static void to_face(side *s, pls_vec3 m)
 {
     const pls_polytope *t = s->p->shape->polytope;
     double most = -INFINITY;
     s->kind = UNKNOWN;
-    for (uint32_t f = 0; f < t->face_count; ++f)
+    for (uint32_t f = 0; f < t->face_count && s->p->shape->dimension == 3; ++f)
     {
         int held = 0;
         for (uint32_t k = t->face_start[f]; k < t->face_start[f + 1]; ++k)
