@@ -18,9 +18,7 @@
 #include "contact/smooth_depth.h"
 #include "shape/builtin.h"
 
-static const double together =
-    0.02; ///< of the size, or [rad]: what is nearly as high as the highest is taken for one feature with it; the first look then tells
-static const double enough = 1e-11;      ///< of the size, on what is left of the gradient
+static const double enough = 1e-13;      ///< of the size, on what is left of the gradient
 static const double rounding = 1e-14;    ///< of the size: by which other vertices may be higher
 static const double longest = 0.3;       ///< step [rad]
 static const double nearly_along = 1e-4; ///< sine of the angle of edges that leave no normal to speak of
@@ -67,7 +65,7 @@ static uint32_t others(const pls_polytope *t, uint32_t v, const uint32_t **list)
     return t->neighbour_start ? t->neighbour_start[v + 1] - t->neighbour_start[v] : t->vertex_count;
 }
 
-static void classify_polytope(side *s, pls_vec3 m)
+static void classify_polytope(side *s, pls_vec3 m, double together)
 {
     const pls_polytope *t = s->p->shape->polytope;
     const uint32_t v = highest(t, m), *list, count = others(t, v, &list);
@@ -92,11 +90,12 @@ static void classify_polytope(side *s, pls_vec3 m)
     s->v[0] = face;
 }
 
-static void classify(side *s, pls_vec3 n)
+/// What is nearly as high as the highest is taken for one feature with it; the first look then tells.
+static void classify(side *s, pls_vec3 n, double together)
 {
     const pls_vec3 m = pls_posed_turn_back(s->p, pls_scale(n, s->sign));
     if (s->p->shape->polytope)
-        classify_polytope(s, m);
+        classify_polytope(s, m, together);
     else if (s->cylinder)
     {
         s->kind = fabs(m.z) < together ? EDGE : hypot(m.x, m.y) < together ? FACE : CORNER;
@@ -144,12 +143,12 @@ static bool known_shape(const pls_shape *s)
     return is_cylinder(s) || (s->ops->smooth && s->ops->support && s->ops->support_gradient);
 }
 
-static bool begin(side *s, const pls_posed *p, double sign, pls_vec3 n, const double memory[2])
+static bool begin(side *s, const pls_posed *p, double sign, pls_vec3 n, double together, const double memory[2])
 {
     *s = (side){.p = p, .sign = sign, .cylinder = is_cylinder(p->shape)};
     if (!known_shape(p->shape)) return false;
     recall(s, memory);
-    if (s->kind == UNKNOWN) classify(s, n);
+    if (s->kind == UNKNOWN) classify(s, n, together);
     return true;
 }
 
@@ -394,12 +393,13 @@ static enum answer solve(side *a, side *b, pls_vec3 *n, pls_depth *out)
     return l.count == 0 ? FOUND : slide(&l, gap);
 }
 
-bool pls_feature_depth(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double memory[PLS_FEATURE_MEMORY], pls_depth *out)
+bool pls_feature_depth(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double together, double memory[PLS_FEATURE_MEMORY],
+                       pls_depth *out)
 {
     side A, B;
     pls_vec3 n = normal;
     *out = (pls_depth){.converged = true};
-    if (!begin(&A, a, 1.0, n, memory) || !begin(&B, b, -1.0, n, memory + 2)) return false;
+    if (!begin(&A, a, 1.0, n, together, memory) || !begin(&B, b, -1.0, n, together, memory + 2)) return false;
     enum answer answer = CHANGED;
     for (int k = 0; k < MOST_CHANGES && answer == CHANGED; ++k)
     {

@@ -15,10 +15,16 @@ enum { MOST_PUSHES = 60 };
 static const double push = 0.02;    // beyond the depth, of the smaller size
 static const double exact = 1e-13;  // of EPA on polytopes
 static const double roughly = 1e-3; // of EPA on smooth sets, to be refined
-static const double finely = 1e-9;  // of EPA on smooth sets where there is no proof
-static const double proof = 1e-9;   // by which a ball may be too small, of the size
+static const double finely = 1e-9;  // of EPA on smooth sets where there is no proof: of the size,
+static const double shallow = 1e-7; // or of the depth, whichever is less; and a ball that proves may be smaller than the depth by so much
 
 static double smaller(const pls_convex *a, const pls_convex *b) { return fmin(a->size, b->size); }
+
+static double open_of(const pls_convex *a, const pls_convex *b, double delta)
+{
+    const double scale = a->size + b->size;
+    return fmin(finely * scale, shallow * fmax(delta, 0.0) + exact * scale);
+}
 
 /// Witness points from the weights, exactly delta apart along the normal, then the margins.
 static void finish(const pls_convex *a, const pls_convex *b, const pls_simplex *s, pls_depth *d)
@@ -109,7 +115,7 @@ static bool follow(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls
 static bool is_least(const pls_convex *a, const pls_convex *b, const pls_simplex *s, const pls_depth *d)
 {
     if (d->delta <= 0.0) return true;
-    double enough = d->delta - proof * smaller(a, b);
+    double enough = d->delta - open_of(a, b, d->delta);
     pls_vec3 on_a = pls_vec(0.0, 0.0, 0.0), on_b = on_a;
     for (int k = 0; k < s->count; ++k)
     {
@@ -125,7 +131,7 @@ static bool refine(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls
     pls_simplex t = {.count = 0};
     pls_depth finer = *d;
     finer.converged = false;
-    bool found = follow(a, b, &t, &finer) && finer.delta <= d->delta + finely * (a->size + b->size);
+    bool found = follow(a, b, &t, &finer) && finer.delta <= d->delta + open_of(a, b, d->delta);
     if (found)
         *d = finer, *s = t;
     else
@@ -149,14 +155,14 @@ static void overlap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s,
         d->local = false;
         if (d->delta <= 0.0 || is_least(a, b, s, d)) return;
         pls_simplex kept = *s;
-        if (!pls_epa_less(a, b, finely * scale, d))
+        if (!pls_epa_less(a, b, open_of(a, b, d->delta), d))
         {
             *s = kept;
             return;
         }
     }
     s->count = 0;
-    found = pls_epa(a, b, finely * scale, s);
+    found = pls_epa(a, b, open_of(a, b, d->delta), s);
     found.iterations += d->iterations, found.support_calls += d->support_calls;
     *d = found;
 }

@@ -42,7 +42,8 @@ _Static_assert(FEATURES * sizeof(double) >= sizeof(pls_depth_state), "two memori
 
 static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
 
-static const double proof = 1e-9; ///< of the smaller radius: by how much a ball that proves a depth may be too small
+static const double rounding = 1e-13; ///< of the smaller radius, of distances
+static const double proof = 1e-7;     ///< of the depth: by how much a ball that proves it may be too small
 
 typedef struct query
 {
@@ -235,6 +236,18 @@ static pls_depth incremental(const query *q)
 
 static bool is_least(const query *q, const pls_depth *d);
 
+/// The last digits: GJK and the expanding polytope only come near to what is round.
+static void polish(const query *q, pls_depth *d)
+{
+    pls_depth finer;
+    const double near = 1e-6 * fmin(q->a->size, q->b->size);
+    if (!pls_feature_depth(q->a, q->b, d->normal, PLS_FEATURES_NOW, q->state + FEATURES, &finer) || !(fabs(finer.delta - d->delta) < near))
+        return;
+    finer.iterations += d->iterations;
+    finer.converged = d->converged;
+    *d = finer;
+}
+
 /// The same features as in the last step, mostly.
 static pls_depth by_features(const query *q)
 {
@@ -243,7 +256,7 @@ static pls_depth by_features(const query *q)
     if (winner != NOTHING && is_far(q, &d)) return d;
     if (winner == INCREMENTAL || winner == NEWTON_ON_FEATURES)
     {
-        const bool found = pls_feature_depth(q->a, q->b, recalled_normal(q), q->state + FEATURES, &d);
+        const bool found = pls_feature_depth(q->a, q->b, recalled_normal(q), PLS_FEATURES_LAST_STEP, q->state + FEATURES, &d);
         if (found && is_least(q, &d))
         {
             count(q, d.iterations, &d);
@@ -255,7 +268,9 @@ static pls_depth by_features(const query *q)
         memset(q->state + FEATURES, 0, PLS_FEATURE_MEMORY * sizeof *q->state);
         q->state[WINNER] = found ? NOTHING : INCREMENTAL; // a minimum that may not be the least: from scratch
     }
-    return incremental(q);
+    d = incremental(q);
+    if (d.delta > -far_apart * fmin(q->a->size, q->b->size)) polish(q, &d);
+    return d;
 }
 
 /// With curvature on both sides. BFGS is right where Newton has met a flat place.
@@ -350,7 +365,7 @@ static void remember_projections(const query *q, const pls_depth *d)
 static bool is_least(const query *q, const pls_depth *d)
 {
     if (d->delta <= fmax(q->a->shape->inner_radius * q->a->scale, q->b->shape->inner_radius * q->b->scale)) return true;
-    double enough = d->delta - proof * fmin(q->a->size, q->b->size);
+    double enough = d->delta * (1.0 - proof) - rounding * fmin(q->a->size, q->b->size);
     return -pls_posed_sdf(q->a, d->on_b) >= enough || -pls_posed_sdf(q->b, d->on_a) >= enough;
 }
 

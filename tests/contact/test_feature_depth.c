@@ -38,7 +38,8 @@ static void expect(const pls_posed *a, const pls_posed *b, pls_vec3 start, doubl
         for (int again = 0; again < 2; ++again) // then with what it remembers
         {
             pls_depth d;
-            assert_true(pls_feature_depth(swapped ? b : a, swapped ? a : b, pls_scale(pls_unit(start), sign), memory, &d));
+            assert_true(
+                pls_feature_depth(swapped ? b : a, swapped ? a : b, pls_scale(pls_unit(start), sign), PLS_FEATURES_LAST_STEP, memory, &d));
             assert_true(fabs(d.delta - delta) < 1e-12);
             assert_true(gap_between(d.normal, pls_scale(normal, sign)) < 1e-9);
             assert_true(gap_between(pls_sub(d.on_a, d.on_b), pls_scale(d.normal, d.delta)) < 1e-10);
@@ -124,7 +125,7 @@ static void what_is_no_point_is_refused(void **state)
     pls_depth d;
     const pls_posed a = pls_pose(box, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0),
                     b = pls_pose(can, pls_vec(0.0, 0.0, 0.59), pls_quat_identity(), 1.0);
-    assert_false(pls_feature_depth(&a, &b, pls_vec(0.0, 0.0, 1.0), memory, &d));
+    assert_false(pls_feature_depth(&a, &b, pls_vec(0.0, 0.0, 1.0), PLS_FEATURES_LAST_STEP, memory, &d));
     for (int k = 0; k < PLS_FEATURE_MEMORY; ++k) assert_true(memory[k] == 0.0);
     pls_shape_free(box), pls_shape_free(can);
 }

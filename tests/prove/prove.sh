@@ -120,9 +120,12 @@ TEXT
 ## Depths of pairs of shapes
 
 Every pair of shapes at random and along tumbling trajectories, from gaps of 5 % of the size to overlaps of 5 % (\`tests/support/narrow_oracle.c\`). Lengths are parts of the smaller
-bounding radius. *depth*: worst error, that of the overlap along the normal found, or by how much another direction has less, over separating axes (polytopes), bounds from both sides (gaps; overlaps where a ball about a witness point lies in the other body) or a search (*searched*);
-*of depth*: the same as part of the depth itself, of depths from 1e-6; *normal*: distance from the oracle's, where both are the same minimum; *points*: distance of the witness points
-from their surfaces; *wrong*: errors above 1e-8 (polytopes) or 1e-6 (others). Iterations, restarts (cold), fallbacks (to a slower method) and time per query are those of trajectories.
+bounding radius. *depth*: worst error, of the overlap along the normal found, or by how much other directions may have less: over separating axes (polytopes), by bounds from both sides
+(gaps; overlaps where a ball about a witness point lies in the other body), or by branch and bound over all directions (*searched*); *of depth*: the same as part of the depth
+itself, of depths from 1e-6; *normal*: distance from one whose overlap is the depth, where that of the answer is not (a support point that jumps along a straight line makes errors of the
+normal count in first order); *points*: distance of the witness points from their surfaces; *above*: errors above 1e-8 (polytopes) or 1e-6 (others) of the depth; *wrong*: those which are so
+as parts of 0.5 % of the size as well (of 10 % for shapes of which nothing is known but values). Iterations, restarts (cold), fallbacks (to a slower method) and time per query are
+those of trajectories.
 TEXT
     cat "$scratch/narrow.md"
     cat <<TEXT

@@ -20,6 +20,7 @@ static void add(narrow_tally *to, const narrow_tally *t)
     to->depth_relative = fmax(to->depth_relative, t->depth_relative);
     to->normal = fmax(to->normal, t->normal);
     to->points = fmax(to->points, t->points);
+    to->above += t->above;
     to->wrong += t->wrong;
     to->not_finite += t->not_finite;
     to->counts.failures += t->counts.failures;
@@ -31,9 +32,10 @@ static uint64_t row(int dimension, int a, int b, const int numbers[NUMBERS])
     narrow_random(dimension, a, b, numbers[0], numbers[4], 1, &cold);
     narrow_tumble(dimension, a, b, numbers[1], numbers[2], numbers[3], numbers[4], 2, &warm);
     add(&both, &cold), add(&both, &warm);
-    printf("| %s - %s | %llu | %llu | %.1e | %.1e | %.1e | %.1e | %llu | %llu | %.2f | %llu | %llu | %.0f |\n", narrow_name(dimension, a),
-           narrow_name(dimension, b), (unsigned long long)both.checked, (unsigned long long)both.searched, both.depth, both.depth_relative,
-           both.normal, both.points, (unsigned long long)(both.wrong + both.not_finite), (unsigned long long)both.counts.failures,
+    printf("| %s - %s | %llu | %llu | %.1e | %.1e | %.1e | %.1e | %llu | %llu | %llu | %.2f | %llu | %llu | %.0f |\n",
+           narrow_name(dimension, a), narrow_name(dimension, b), (unsigned long long)both.checked, (unsigned long long)both.searched,
+           both.depth, both.depth_relative, both.normal, both.points, (unsigned long long)both.above,
+           (unsigned long long)(both.wrong + both.not_finite), (unsigned long long)both.counts.failures,
            (double)warm.counts.iterations / (double)warm.counts.queries, (unsigned long long)warm.counts.restarts,
            (unsigned long long)warm.counts.fallbacks, warm.nanoseconds);
     fflush(stdout);
@@ -43,10 +45,11 @@ static uint64_t row(int dimension, int a, int b, const int numbers[NUMBERS])
 static uint64_t table(int dimension, const int numbers[NUMBERS])
 {
     uint64_t bad = 0;
-    printf("\n%dD\n\n| pair | compared | searched | depth | of depth | normal | points | wrong | failures | iterations | restarts | "
-           "fallbacks | ns |\n",
-           dimension);
-    printf("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+    printf(
+        "\n%dD\n\n| pair | compared | searched | depth | of depth | normal | points | above | wrong | failures | iterations | restarts | "
+        "fallbacks | ns |\n",
+        dimension);
+    printf("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     for (int b = 0; narrow_shape(dimension, b); ++b)
         for (int a = 0; a <= b; ++a)
         {

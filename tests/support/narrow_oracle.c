@@ -9,6 +9,7 @@
 
 static const double most_overlap = 0.1; ///< of the smaller bounding radius: 5 % of the size
 static const double least_overlap = 2e-6;
+static const double rounding = 2e-14; ///< of the size: coordinates are some sizes away from zero
 
 // ---- shapes -------------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -216,17 +217,7 @@ static double F_of(const body *a, const body *b, pls_vec3 n)
 
 // ---- separating axes --------------------------------------------------------------------------------------------------------------------------------------------
 
-typedef struct least
-{
-    double F;
-    pls_vec3 n;
-} least;
-
-static void try_normal(const body *a, const body *b, pls_vec3 n, least *best)
-{
-    double F = F_of(a, b, n);
-    if (F < best->F) best->F = F, best->n = n;
-}
+static void try_normal(const body *a, const body *b, pls_vec3 n, double *least) { *least = fmin(*least, F_of(a, b, n)); }
 
 typedef struct edge
 {
@@ -263,7 +254,7 @@ static int edges_of(const body *s, edge *out)
 /// Does the plane through the origin with normal m part the normals of the edge's faces? With slack, so that touching ones count.
 static bool straddles(const edge *e, pls_vec3 m, double size) { return pls_dot(e->f, m) * pls_dot(e->g, m) < 1e-9 * size * size; }
 
-static void try_edges(const body *a, const body *b, least *best)
+static void try_edges(const body *a, const body *b, double *least)
 {
     static _Thread_local edge ea[MOST_EDGES], eb[MOST_EDGES];
     const int na = edges_of(a, ea), nb = edges_of(b, eb);
@@ -275,83 +266,157 @@ static void try_edges(const body *a, const body *b, least *best)
             pls_vec3 n = pls_cross(ea[i].along, eb[j].along);
             if (!(pls_length(n) > 1e-9 * pls_length(ea[i].along) * pls_length(eb[j].along))) continue;
             n = pls_unit(n);
-            try_normal(a, b, n, best);
-            try_normal(a, b, pls_scale(n, -1.0), best);
+            try_normal(a, b, n, least);
+            try_normal(a, b, pls_scale(n, -1.0), least);
         }
 }
 
-static void try_faces(const body *of, const body *a, const body *b, double sign, least *best)
+static void try_faces(const body *of, const body *a, const body *b, double sign, double *least)
 {
     const pls_polytope *p = of->shape->polytope;
-    for (uint32_t f = 0; f < p->face_count; ++f) try_normal(a, b, pls_scale(pls_posed_turn(&of->pose, p->face_normal[f]), sign), best);
+    for (uint32_t f = 0; f < p->face_count; ++f) try_normal(a, b, pls_scale(pls_posed_turn(&of->pose, p->face_normal[f]), sign), least);
 }
 
 /// Cores that overlap: exact.
-static least by_axes(const body *a, const body *b)
+static double by_axes(const body *a, const body *b)
 {
-    least best = {INFINITY, {1.0, 0.0, 0.0}};
-    try_faces(a, a, b, 1.0, &best);
-    try_faces(b, a, b, -1.0, &best);
-    if (a->shape->dimension == 3) try_edges(a, b, &best);
+    double least = INFINITY;
+    try_faces(a, a, b, 1.0, &least);
+    try_faces(b, a, b, -1.0, &least);
+    if (a->shape->dimension == 3) try_edges(a, b, &least);
+    return least;
+}
+
+// ---- bounds over all directions --------------------------------------------------------------------------------------------------------------------------------
+
+/// A direction and the support point of the Minkowski difference along it, p.n = F(n); p bounds F from below all over, F(m) >= p.m.
+typedef struct sample
+{
+    pls_vec3 n, p;
+} sample;
+
+/// All directions between the corners: in 2D an arc (two of them), in 3D a spherical triangle.
+typedef struct cone
+{
+    sample corner[3];
+} cone;
+
+static sample sample_of(const body *a, const body *b, pls_vec3 n)
+{
+    n = pls_unit(n);
+    return (sample){n, pls_sub(support(a, n), support(b, pls_scale(n, -1.0)))};
+}
+
+static double least_along(const cone *c, pls_vec3 p, int corners)
+{
+    double low = INFINITY;
+    for (int k = 0; k < corners; ++k) low = fmin(low, pls_dot(p, c->corner[k].n));
+    return low;
+}
+
+/// The bound that the mixture of three points gives whose plane has its foot inside of them.
+static double by_three(const cone *c, pls_vec3 p, pls_vec3 q, pls_vec3 r)
+{
+    const pls_vec3 u = pls_sub(q, p), v = pls_sub(r, p), n = pls_cross(u, v);
+    const double square = pls_dot(n, n);
+    if (!(square > 0.0)) return -INFINITY;
+    const pls_vec3 w = pls_sub(pls_scale(n, pls_dot(p, n) / square), p);
+    const double second = pls_dot(pls_cross(w, v), n) / square, third = pls_dot(pls_cross(u, w), n) / square;
+    if (!(second >= 0.0 && third >= 0.0 && second + third <= 1.0)) return -INFINITY;
+    return least_along(c, pls_add(p, pls_add(pls_scale(u, second), pls_scale(v, third))), 3);
+}
+
+/// A bound of F from below over the cone: the best that mixtures of its corners' points and of `known`, another point of the Minkowski difference, give. For m = sum of
+/// l_k n_k, |m| = 1, the sum of l is at least 1, so a point whose products with all corners are positive bounds F by the least of them.
+static double bound_of(const cone *c, pls_vec3 known, int corners)
+{
+    pls_vec3 p[4] = {known};
+    double best = -INFINITY;
+    for (int k = 0; k < corners; ++k) p[k + 1] = c->corner[k].p;
+    for (int i = 0; i <= corners; ++i) best = fmax(best, least_along(c, p[i], corners));
+    for (int i = 0; i <= corners; ++i)
+        for (int j = 0; j < i; ++j)
+        {
+            // Along p_i + t (p_j - p_i) the products with two corners are equal at one t.
+            const pls_vec3 u = pls_sub(p[j], p[i]);
+            for (int k = 0; k < corners; ++k)
+            {
+                const pls_vec3 apart = pls_sub(c->corner[k].n, c->corner[(k + 1) % corners].n);
+                const double t = -pls_dot(p[i], apart) / pls_dot(u, apart);
+                if (t > 0.0 && t < 1.0) best = fmax(best, least_along(c, pls_add(p[i], pls_scale(u, t)), corners));
+            }
+        }
+    for (int k = 0; k < 4 && corners == 3; ++k) best = fmax(best, by_three(c, p[k], p[(k + 1) % 4], p[(k + 2) % 4]));
     return best;
 }
 
-// ---- search -----------------------------------------------------------------------------------------------------------------------------------------------------
-
-/// Poll rings about best->n that shrink from `step`, two at a time; a valley with a sharp bottom is found by turning them.
-static void poll(const body *a, const body *b, double step, pls_random *random, least *best)
+/// Halve the cone's longest side.
+static void halve(const body *a, const body *b, const cone *c, int corners, cone half[2])
 {
-    const int dimension = a->shape->dimension, ring = dimension == 2 ? 2 : 10;
-    int fails = 0;
-    while (step > 1e-9)
+    int longest = 0;
+    double most = INFINITY;
+    for (int k = 0; k < corners; ++k)
     {
-        pls_vec3 c = best->n, off = fabs(c.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0);
-        pls_vec3 u = pls_unit(pls_cross(off, c)), v = pls_cross(c, u);
-        double before = best->F, phase = dimension == 2 ? 0.0 : pls_random_uniform(random);
-        for (int k = 0; k < ring; ++k)
-        {
-            double angle = 2.0 * M_PI * (k + phase) / ring, s = dimension == 2 ? 0.0 : sin(angle);
-            try_normal(a, b, pls_unit(pls_add(c, pls_scale(pls_add(pls_scale(u, cos(angle)), pls_scale(v, s)), step))), best);
-        }
-        fails = best->F < before ? 0 : fails + 1;
-        if (fails == 2) step *= 0.5, fails = 0;
+        const double cosine = pls_dot(c->corner[k].n, c->corner[(k + 1) % corners].n);
+        if (cosine < most) most = cosine, longest = k;
     }
+    const int other = (longest + 1) % corners;
+    const sample middle = sample_of(a, b, pls_add(c->corner[longest].n, c->corner[other].n));
+    half[0] = half[1] = *c;
+    half[0].corner[longest] = half[1].corner[other] = middle;
 }
 
-static least by_search(const body *a, const body *b, pls_vec3 answer, pls_random *random)
+/// A proof of the depth from below, by branch and bound: every direction lies in a cone over which F is bounded by no less than `upper` - `slack`, or a direction of less F
+/// is found. `known`: the difference of two points of the bodies, which as a point of their Minkowski difference spares looking closely at what is around the answer.
+/// Returns the bound of the least F.
+static double by_bounding(const body *a, const body *b, pls_vec3 known, double upper, double slack)
 {
-    enum { COARSE = 800, KEPT = 3 };
-    const int dimension = a->shape->dimension, count = dimension == 2 ? COARSE / 2 : COARSE;
-    least best[KEPT + 1];
-    for (int k = 0; k <= KEPT; ++k) best[k] = (least){INFINITY, answer};
-    for (int k = 0; k < count; ++k)
+    enum { STACK = 256, MOST = 200000 };
+    const int corners = a->shape->dimension;
+    cone stack[STACK];
+    int count = 0;
+    double low = upper;
+    static const pls_vec3 axis[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    for (int k = 0; k < 1 << corners; ++k)
     {
-        double z = dimension == 2 ? 0.0 : 1.0 - (2.0 * k + 1.0) / count,
-               angle = dimension == 2 ? 2.0 * M_PI * k / count : 2.399963229728653 * k;
-        least t = {INFINITY, {0.0, 0.0, 0.0}};
-        try_normal(a, b, pls_vec(sqrt(1.0 - z * z) * cos(angle), sqrt(1.0 - z * z) * sin(angle), z), &t);
-        // Keep the best ones that are not neighbours.
-        for (int m = 0; m < KEPT; ++m)
+        for (int d = 0; d < corners; ++d) stack[count].corner[d] = sample_of(a, b, pls_scale(axis[d], k >> d & 1 ? 1.0 : -1.0));
+        ++count;
+    }
+    for (int turn = 0; count > 0; ++turn)
+    {
+        const cone c = stack[--count];
+        for (int k = 0; k < corners; ++k) low = fmin(low, pls_dot(c.corner[k].n, c.corner[k].p));
+        if (low < upper - slack) break; // less was found
+        const double bound = bound_of(&c, known, corners);
+        if (bound >= upper - slack || turn >= MOST || count + 2 > STACK) // what could not be proved shows as the bound that is left
+            low = fmin(low, bound);
+        else
+            halve(a, b, &c, corners, &stack[count]), count += 2;
+    }
+    return low;
+}
+
+/// From above: polls rings of directions about n that shrink, until F is no more than `enough`. F has kinks (a support point jumps from end to end of a straight line), where an
+/// error of the normal counts in first order.
+static double by_polling(const body *a, const body *b, pls_vec3 *n, double enough, pls_random *random)
+{
+    const int dimension = a->shape->dimension, ring = dimension == 2 ? 2 : 10;
+    double least = F_of(a, b, *n);
+    for (double step = 1e-5; step > 1e-16 && least > enough;)
+    {
+        const pls_vec3 c = *n, off = fabs(c.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0);
+        const pls_vec3 u = pls_unit(pls_cross(off, c)), v = pls_cross(c, u);
+        const double before = least, phase = dimension == 2 ? 0.0 : pls_random_uniform(random);
+        for (int k = 0; k < ring; ++k)
         {
-            bool near = pls_dot(t.n, best[m].n) > 0.95 && best[m].F < INFINITY;
-            if (t.F < best[m].F)
-            {
-                for (int s = KEPT - 1; s > m && !near; --s) best[s] = best[s - 1];
-                best[m] = t;
-                break;
-            }
-            if (near) break;
+            const double angle = 2.0 * M_PI * (k + phase) / ring, across = dimension == 2 ? 0.0 : sin(angle);
+            const pls_vec3 m = pls_unit(pls_add(c, pls_scale(pls_add(pls_scale(u, cos(angle)), pls_scale(v, across)), step)));
+            const double F = F_of(a, b, m);
+            if (F < least) least = F, *n = m;
         }
+        if (!(least < before)) step *= 0.7;
     }
-    try_normal(a, b, answer, &best[KEPT]);
-    least found = best[KEPT];
-    for (int m = 0; m <= KEPT; ++m)
-    {
-        if (best[m].F == INFINITY) continue;
-        poll(a, b, m == KEPT ? 1e-3 : 0.1, random, &best[m]);
-        if (best[m].F < found.F) found = best[m];
-    }
-    return found;
+    return least;
 }
 
 // ---- comparison -------------------------------------------------------------------------------------------------------------------------------------------------
@@ -367,7 +432,15 @@ static double bound_of_balls(const body *a, const body *b, pls_vec3 on_a, pls_ve
     return fmax(-pls_posed_sdf(&a->pose, on_b), -pls_posed_sdf(&b->pose, on_a));
 }
 
-/// Bounds from both sides where they meet; else, or if `search`, the least F of an oracle.
+/// Depths and distances, as parts of the size, below which errors are parts of this one: for polytopes rounding is all there is, where round shapes have minima that differ by less the
+/// expanding polytope may have no more room to tell them apart, and of values alone differences are taken.
+static double floor_of(const body *a, const body *b)
+{
+    if (a->row->form == CONE || b->row->form == CONE) return 0.1;
+    return a->row->form == POINTS && (b->row->form == POINTS || b->row->form == PLANE) ? 1e-6 : 5e-3;
+}
+
+/// Bounds from both sides; `search`: the oracle's own lower one also where a ball proves it.
 static void compare(const body *a, const body *b, const pls_touch *t, double allowed, bool search, pls_random *random, narrow_tally *tally)
 {
     const double size = fmin(a->pose.size, b->pose.size), delta = t->delta;
@@ -377,30 +450,35 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
         ++tally->not_finite;
         return;
     }
+    const double depth = fmax(fabs(delta) / size, 1e-6), most = allowed * fmax(depth, floor_of(a, b)) + rounding;
+    const double enough = 0.1 * (allowed * depth + rounding);
     pls_vec3 n = t->normal, half = pls_scale(n, 0.5 * delta), on_a = pls_add(t->point, half), on_b = pls_sub(t->point, half);
     double points = fmax(fabs(pls_posed_sdf(&a->pose, on_a)), fabs(pls_posed_sdf(&b->pose, on_b))) / size;
-    double attained = fabs(delta - F_of(a, b, n)) / size, error = fmax(attained, fabs(pls_length(n) - 1.0));
+    double error = fmax(fabs(delta - F_of(a, b, n)) / size, fabs(pls_length(n) - 1.0));
+    if (error > enough && delta < F_of(a, b, n)) // is there less nearby?
+    {
+        error = (by_polling(a, b, &n, delta + enough * size, random) - delta) / size;
+        worst(&tally->normal, pls_length(pls_sub(n, t->normal)));
+    }
     worst(&tally->points, points);
     const bool apart = delta < a->margin + b->margin; // cores apart: then the bounds prove it
     const bool polytopes = a->row->form == POINTS && b->row->form == POINTS;
     const double left_open = (delta - bound_of_balls(a, b, on_a, on_b)) / size;
-    if (!apart && b->row->form != PLANE && !search && left_open < 0.1 * allowed)
+    if (!apart && b->row->form != PLANE && !search && left_open < enough)
         error = fmax(error, left_open);
     else if (!apart && b->row->form != PLANE)
     {
         ++tally->searched;
-        least o = polytopes ? by_axes(a, b) : by_search(a, b, n, random);
-        error = fmax(error, (delta - o.F) / size);
-        double turned = pls_length(pls_sub(o.n, n));
-        if (turned < 0.02) worst(&tally->normal, turned);
+        const pls_vec3 known = pls_sub(on_a, on_b);
+        error = fmax(error, (delta - (polytopes ? by_axes(a, b) : by_bounding(a, b, known, delta, enough * size))) / size + 2.0 * points);
     }
     worst(&tally->depth, error);
+    tally->above += error > allowed * depth + rounding;
     if (fabs(delta) > 1e-6 * size) worst(&tally->depth_relative, error * size / fabs(delta));
-    if (error > allowed || (apart && points > allowed))
+    if (error > most || (apart && points > most))
     {
         if (getenv("NARROW_VERBOSE") && tally->wrong < 5)
-            fprintf(stderr, "wrong: delta %.9g of the size, error %.3g, attained %.3g, points %.3g\n", delta / size, error, attained,
-                    points);
+            fprintf(stderr, "wrong: depth %.9g of the size, error %.3g, points %.3g\n", delta / size, error, points);
         ++tally->wrong;
     }
 }

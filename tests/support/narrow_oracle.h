@@ -4,7 +4,8 @@
 //   overlapping polytopes   all normals of faces and all products of edges whose normals meet (separating axes): exact
 //   a gap, also of cores    two points of the bodies a distance apart along n, and F(n) = minus that distance: bounds from both sides, so a proof
 //   overlaps, mostly        a ball about the point of one body that lies in the other: F is no less than its radius along any n. A proof as well, but without the oracle's own normal
-//   all else                F over dense directions, the best of them and the answer's own n refined by polling ever smaller rings, turned at random
+//   all else                branch and bound over all directions: support points of the Minkowski difference bound F from below over cones of directions, which are halved until no
+//                           cone is left where F could be less. A proof too
 // Support functions here are the oracle's own: all vertices tried, or closed forms.
 #ifndef PLS_TESTS_NARROW_ORACLE_H
 #define PLS_TESTS_NARROW_ORACLE_H
@@ -18,11 +19,12 @@ typedef struct narrow_tally
 {
     uint64_t checked;
     uint64_t searched;     ///< of these, where the oracle looked for less
-    double depth;          ///< worst error: |delta - F(n)|, or delta less the least F found
+    double depth;          ///< worst error: |delta - F(n)|, or delta less what bounds the least F from below
     double depth_relative; ///< the same as part of the depth or distance, of those above 1e-6
-    double normal;         ///< worst distance of the normal from the oracle's, where that is the same minimum
+    double normal;         ///< distance from one whose F is the depth, where the answer's own F is not
     double points;         ///< worst distance of a witness point from its surface
-    uint64_t wrong;        ///< depth errors above what is allowed
+    uint64_t above;        ///< depth errors above what is allowed as part of the depth itself
+    uint64_t wrong;        ///< and as part of 0.5 % of the size too (0.1 of the size where a shape has values alone)
     uint64_t not_finite;
     double nanoseconds; ///< per query, along trajectories
     pls_narrow_counts counts;
@@ -32,7 +34,7 @@ typedef struct narrow_tally
 const pls_shape *narrow_shape(int dimension, int number);
 const char *narrow_name(int dimension, int number);
 void narrow_free_shapes(void);
-/// Error of depths allowed for a pair: 1e-8 for polytopes, 1e-6 for others.
+/// Error of depths allowed for a pair, as part of the depth: 1e-8 for polytopes, 1e-6 for others.
 double narrow_allowed(int dimension, int a, int b);
 
 /// Random poses, half of them overlapping, by 1e-6 to 5 % of the size; nothing known beforehand. `searched`: of how many one is searched also where a ball proves it.
