@@ -221,30 +221,53 @@ static bool has_many_faces(const pls_polytope *p) { return p->face_count > 12 &&
 static pls_depth ball_polytope(const query *q) { return has_many_faces(q->b->shape->polytope) ? polytopes(q) : ball_any(q); }
 static pls_depth polytope_ball(const query *q) { return has_many_faces(q->a->shape->polytope) ? polytopes(q) : any_ball(q); }
 
-static pls_depth incremental(const query *q)
+/// By incremental depth, from what the last step left.
+static pls_depth warm_depth(const query *q)
 {
     pls_depth d;
-    if (is_far(q, &d)) return d;
     const pls_convex a = convex_of(q->a), b = convex_of(q->b);
     pls_depth_state own;
     memcpy(&own, q->state, sizeof own);
     d = pls_depth_warm(&a, &b, &own);
     memcpy(q->state, &own, sizeof own);
+    return d;
+}
+
+static pls_depth incremental(const query *q)
+{
+    pls_depth d;
+    if (is_far(q, &d)) return d;
+    d = warm_depth(q);
     count(q, d.iterations, &d);
     return d;
 }
 
 static bool is_least(const query *q, const pls_depth *d);
 
-/// The last digits: GJK and the expanding polytope only come near to what is round.
+/// Minima that differ by less than GJK's last digits, or that the expanding polytope gave no certain answer about: is another one less?
+static void ask_again(const query *q, pls_depth *d)
+{
+    const pls_convex a = convex_of(q->a), b = convex_of(q->b);
+    const double margins = a.margin + b.margin;
+    double memory[PLS_FEATURE_MEMORY] = {0.0};
+    pls_depth other = *d, finer;
+    other.delta -= margins;
+    const bool less = pls_epa_less(&a, &b, rounding * (a.size + b.size) + proof * other.delta, &other);
+    d->converged = less || other.converged;
+    if (less && pls_feature_depth(q->a, q->b, other.normal, PLS_FEATURES_LAST_STEP, memory, &finer) && finer.delta < d->delta) *d = finer;
+}
+
+/// The last digits: GJK and the expanding polytope only come near to what is round. Of cores apart any minimum is the distance; of others it has to be the one that was found.
 static void polish(const query *q, pls_depth *d)
 {
     pls_depth finer;
-    const double near = 1e-6 * fmin(q->a->size, q->b->size);
-    if (!pls_feature_depth(q->a, q->b, d->normal, PLS_FEATURES_NOW, q->state + FEATURES, &finer) || !(fabs(finer.delta - d->delta) < near))
-        return;
+    const double size = fmin(q->a->size, q->b->size);
+    if (!pls_feature_depth(q->a, q->b, d->normal, PLS_FEATURES_NOW, q->state + FEATURES, &finer)) return;
+    const bool apart = finer.delta < q->a->shape->margin * q->a->scale + q->b->shape->margin * q->b->scale;
+    if (!apart && !(fabs(finer.delta - d->delta) < 1e-6 * size)) return;
     finer.iterations += d->iterations;
-    finer.converged = d->converged;
+    finer.converged = apart || d->converged;
+    if (!apart && (!d->converged || finer.delta - d->delta > proof * d->delta + rounding * size)) ask_again(q, &finer);
     *d = finer;
 }
 
@@ -268,8 +291,9 @@ static pls_depth by_features(const query *q)
         memset(q->state + FEATURES, 0, PLS_FEATURE_MEMORY * sizeof *q->state);
         q->state[WINNER] = found ? NOTHING : INCREMENTAL; // a minimum that may not be the least: from scratch
     }
-    d = incremental(q);
+    d = warm_depth(q);
     if (d.delta > -far_apart * fmin(q->a->size, q->b->size)) polish(q, &d);
+    count(q, d.iterations, &d);
     return d;
 }
 

@@ -124,7 +124,7 @@ bounding radius. *depth*: worst error, of the overlap along the normal found, or
 (gaps; overlaps where a ball about a witness point lies in the other body), or by branch and bound over all directions (*searched*); *of depth*: the same as part of the depth
 itself, of depths from 1e-6; *normal*: distance from one whose overlap is the depth, where that of the answer is not (a support point that jumps along a straight line makes errors of the
 normal count in first order); *points*: distance of the witness points from their surfaces; *above*: errors above 1e-8 (polytopes) or 1e-6 (others) of the depth; *wrong*: those which are so
-as parts of 0.5 % of the size as well (of 10 % for shapes of which nothing is known but values). Iterations, restarts (cold), fallbacks (to a slower method) and time per query are
+as parts of 5 % of the size as well, where something is round (of the size, for shapes of which nothing is known but values). Iterations, restarts (cold), fallbacks (to a slower method) and time per query are
 those of trajectories.
 TEXT
     cat "$scratch/narrow.md"

@@ -432,12 +432,12 @@ static double bound_of_balls(const body *a, const body *b, pls_vec3 on_a, pls_ve
     return fmax(-pls_posed_sdf(&a->pose, on_b), -pls_posed_sdf(&b->pose, on_a));
 }
 
-/// Depths and distances, as parts of the size, below which errors are parts of this one: for polytopes rounding is all there is, where round shapes have minima that differ by less the
-/// expanding polytope may have no more room to tell them apart, and of values alone differences are taken.
+/// Depths and distances, as parts of the size, below which errors are parts of this one: for polytopes rounding is all there is; where something is round 5 %, the deepest in the campaign; of values
+/// alone, of which differences are taken, the size.
 static double floor_of(const body *a, const body *b)
 {
-    if (a->row->form == CONE || b->row->form == CONE) return 0.1;
-    return a->row->form == POINTS && (b->row->form == POINTS || b->row->form == PLANE) ? 1e-6 : 5e-3;
+    if (a->row->form == CONE || b->row->form == CONE) return 1.0;
+    return a->row->form == POINTS && (b->row->form == POINTS || b->row->form == PLANE) ? 1e-6 : 0.05;
 }
 
 /// Bounds from both sides; `search`: the oracle's own lower one also where a ball proves it.

@@ -24,7 +24,7 @@ typedef struct narrow_tally
     double normal;         ///< distance from one whose F is the depth, where the answer's own F is not
     double points;         ///< worst distance of a witness point from its surface
     uint64_t above;        ///< depth errors above what is allowed as part of the depth itself
-    uint64_t wrong;        ///< and as part of 0.5 % of the size too (0.1 of the size where a shape has values alone)
+    uint64_t wrong;        ///< and as part of 5 % of the size too, where something is round (of the size, where a shape has values alone)
     uint64_t not_finite;
     double nanoseconds; ///< per query, along trajectories
     pls_narrow_counts counts;
