@@ -163,10 +163,12 @@ bool pls_cylinder_on_plane(const pls_posed *a, const pls_posed *b, const pls_dep
     const double mean_x = m.x / m.volume, mean_z = m.z / m.volume, yy = m.yy / m.volume;
     const double xx = m.xx / m.volume - mean_x * mean_x, zz = m.zz / m.volume - mean_z * mean_z, xz = m.xz / m.volume - mean_x * mean_z;
     const double tt = fmax(s * s * zz + c * c * xx - 2.0 * s * c * xz, 0.0);
+    // Turning about its own axis, s of the turning about `ahead`, brings no part of a cylinder nearer: dashpots must not see that as rocking, or they would brake what rolls.
     const pls_vec3 t = ahead, y = across;
-    out->spread[0] = tt * t.x * t.x + yy * y.x * y.x, out->spread[1] = tt * t.y * t.y + yy * y.y * y.y;
-    out->spread[2] = tt * t.z * t.z + yy * y.z * y.z, out->spread[3] = tt * t.x * t.y + yy * y.x * y.y;
-    out->spread[4] = tt * t.x * t.z + yy * y.x * y.z, out->spread[5] = tt * t.y * t.z + yy * y.y * y.z;
+    const double rocks = c * c * yy;
+    out->spread[0] = tt * t.x * t.x + rocks * y.x * y.x, out->spread[1] = tt * t.y * t.y + rocks * y.y * y.y;
+    out->spread[2] = tt * t.z * t.z + rocks * y.z * y.z, out->spread[3] = tt * t.x * t.y + rocks * y.x * y.y;
+    out->spread[4] = tt * t.x * t.z + rocks * y.x * y.z, out->spread[5] = tt * t.y * t.z + rocks * y.y * y.z;
     out->lever = lever_of(fmin(yy, tt), fmax(yy, tt));
     return true;
 }

@@ -276,6 +276,12 @@ static void a_cylinder_lies_and_stands(void **state)
     pls_shape_free(s[0]), pls_shape_free(s[1]), pls_shape_free(plane);
 }
 
+static double moment(const pls_touch *t, pls_vec3 e)
+{
+    const double *s = t->spread;
+    return s[0] * e.x * e.x + s[1] * e.y * e.y + s[2] * e.z * e.z + 2.0 * (s[3] * e.x * e.y + s[4] * e.x * e.z + s[5] * e.y * e.z);
+}
+
 /// The laws of faces of a prism of 120 sides, whose circle has the cylinder's area.
 static void a_cylinder_is_a_prism_of_many_sides(void **state)
 {
@@ -301,9 +307,10 @@ static void a_cylinder_is_a_prism_of_many_sides(void **state)
             assert_near(t.weight / u.weight, 1.0, 2e-2);
             assert_vec_near(pls_vec(t.point.x, t.point.y, 0), pls_vec(u.point.x, u.point.y, 0), 2e-3);
             assert_vec_near(pls_vec(t.middle.x, t.middle.y, 0), pls_vec(u.middle.x, u.middle.y, 0), 2e-3);
-            // The prism's moments are those of the body, not of its shadow (faces.c): the cylinder's lack the thickness.
-            for (int c = 0; c < 6; ++c)
-                if (c < 2 || c == 3) assert_near(t.spread[c], u.spread[c], 1e-3);
+            // Of what a cylinder does about its own axis dashpots see nothing: across the lean its moment counts by the cosine's square.
+            const double share[2] = {1.0, cos(lean) * cos(lean)};
+            const pls_vec3 across[2] = {{0.8, -0.6, 0}, {0.6, 0.8, 0}};
+            for (int c = 0; c < 2; ++c) assert_near(moment(&t, across[c]), share[c] * moment(&u, across[c]), 1e-3);
         }
     }
     pls_shape_free(round), pls_shape_free(prism), pls_shape_free(plane);
