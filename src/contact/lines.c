@@ -353,7 +353,8 @@ static void add_edge(sums *sum, line *l, const pls_posed *own, pls_vec3 p, pls_v
         over_polytope(sum, l);
 }
 
-static void add_edges(sums *sum, const pls_posed *own, const pls_posed *other, pls_vec3 origin, double sign)
+/// `n` from `own` to `other`.
+static void add_edges(sums *sum, const pls_posed *own, const pls_posed *other, pls_vec3 n, pls_vec3 origin, double sign)
 {
     const pls_polytope *p = own->shape->polytope;
     line l = {.against = other,
@@ -362,12 +363,21 @@ static void add_edges(sums *sum, const pls_posed *own, const pls_posed *other, p
               .own_margin = margin_of(own),
               .sign = sign,
               .origin = origin};
-    if (p->face_count == 0) add_edge(sum, &l, own, p->vertex[0], p->vertex[1]);
+    if (p->face_count == 0)
+    {
+        add_edge(sum, &l, own, p->vertex[0], p->vertex[1]);
+        return;
+    }
+    // Edges below all of the other body are far from it.
+    bool near[2 * PLS_MOST_FACES];
+    const double lowest = pls_dot(n, pls_posed_support(other, pls_scale(n, -1.0))) - margin_of(own);
+    for (uint32_t v = 0; v < p->vertex_count; ++v) near[v] = pls_dot(n, pls_posed_world(own, p->vertex[v])) > lowest;
     for (uint32_t f = 0; f < p->face_count; ++f)
         for (uint32_t k = 0; k < corners_of(p, f); ++k)
         {
             const uint32_t v = corner_at(p, f, k), w = corner_at(p, f, k + 1);
-            if (corners_of(p, f) == 2 ? k == 0 : v < w) add_edge(sum, &l, own, p->vertex[v], p->vertex[w]); // each once
+            const bool once = corners_of(p, f) == 2 ? k == 0 : v < w;
+            if (once && (near[v] || near[w])) add_edge(sum, &l, own, p->vertex[v], p->vertex[w]);
         }
 }
 
@@ -415,8 +425,8 @@ bool pls_lines_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
     if (!(a->shape->margin > 0.0) && !(b->shape->margin > 0.0)) return false;
     const pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
     sums sum = {0};
-    if (line_a || !line_b) add_edges(&sum, a, b, origin, -1.0);
-    if (!wall && (line_b || !line_a)) add_edges(&sum, b, a, origin, 1.0);
+    if (line_a || !line_b) add_edges(&sum, a, b, depth->normal, origin, -1.0);
+    if (!wall && (line_b || !line_a)) add_edges(&sum, b, a, pls_scale(depth->normal, -1.0), origin, 1.0);
     out->depth = depth->delta;
     if (sum.power[3] > 0.0)
         line_law(&sum, a->shape->dimension == 2, origin, out);
