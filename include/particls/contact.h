@@ -15,7 +15,7 @@ typedef enum pls_solver {
     PLS_SOLVER_ADMM   ///< P1 eq. 14: the deepest point of each in the other, by ADMM. Not conservative where edges and corners overlap
 } pls_solver;
 
-/// What the law is asked with where faces are nearly parallel.
+/// What the law is asked with where faces are nearly parallel. All but the first go by the whole line too where capsules, rounded bodies and cylinders lie along one.
 typedef enum pls_faces {
     PLS_FACES_POINT, ///< the depth, at the deepest point, which jumps as faces tilt
     PLS_FACES_MANIFOLD, ///< a smooth maximum of the thickness of the overlap: the depth for parallel faces, 3/4 of it at an edge, 3/5 at a corner

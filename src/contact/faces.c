@@ -19,9 +19,9 @@
 // by the force, some tenths of the depth at most. Undamped collisions keep energy to 1e-7 with it (to 1e-3 if it is left out; the point law: 1e-3, kn delta at the
 // centroid: a tenth and more).
 // Walls (half-spaces, triangles and segments of meshes) count by their own d alone, in place of the half sum: buoyancy. A triangle is the prism behind it.
-// Rounded bodies on walls: the core, moved by its margin along the wall's normal, which is exact as well. Between two bodies of which one is rounded the point law stands:
-// moving the cores along the normal of the penetration depth is not conservative where that turns (rounded boxes in random collisions lose or gain some 1e-3 of their
-// energy, at worst several percent), while the integral over rounded edges has no closed form.
+// Rounded bodies on walls: the core, moved by its margin along the wall's normal, which is exact as well. Two bodies of which one is rounded: lines.c. Here moving the cores
+// along the normal of the penetration depth is not conservative where that turns (rounded boxes in random collisions lose or gain some 1e-3 of their energy, at worst
+// several percent), while the integral over rounded edges has no closed form.
 // A half-space and a sphere or an ellipsoid: the cap in closed form. Other smooth pairs have no faces.
 //
 // All this is about the normal force. Friction and dashpots act over the same area and resist turning of one face on the other, about the normal and about axes in the

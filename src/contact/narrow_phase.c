@@ -21,8 +21,10 @@
 
 #include "contact/admm.h"
 #include "contact/convex.h"
+#include "contact/cylinder_on_plane.h"
 #include "contact/faces.h"
 #include "contact/feature_depth.h"
+#include "contact/lines.h"
 #include "contact/polytope_depth.h"
 #include "contact/sdf_depth.h"
 
@@ -546,6 +548,8 @@ void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_o
     ++counts->queries;
     if (!admm || !by_admm(&q, options->tolerance, &d)) d = table[kind_of(a->shape)][kind_of(b->shape)](admm ? &cold : &q);
     as_touch(&d, out);
-    // Where the pair has no faces to speak of the point stands.
-    if (options->faces != PLS_FACES_POINT && d.delta > 0.0) pls_faces_touch(a, b, &d, options, out);
+    // Where the pair has neither faces nor lines to speak of the point stands.
+    if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return;
+    if (pls_faces_touch(a, b, &d, options, out) || pls_cylinder_on_plane(a, b, &d, options, out)) return;
+    pls_lines_touch(a, b, &d, out);
 }

@@ -18,16 +18,18 @@ typedef struct pls_pair_state
 
 typedef struct pls_touch
 {
-    double delta;        ///< effective overlap, which the law is asked with; <= 0: apart [m]
-    pls_vec3 normal;     ///< unit, from A to B
-    pls_vec3 point;      ///< where the normal force acts, in the world [m]
-    pls_vec3 middle;     ///< where friction acts: the same, but for areas of touch their middle, at the height of `point` [m]
-    double weight;       ///< d(delta)/d(approach): 1 but for the volume law (A/A0)
-    double energy_delta; ///< overlap at which a linear spring holds the energy of the contact; `delta` but for the volume law [m]
-    double depth;        ///< penetration depth, for guards [m]
-    double twist;        ///< couple about the normal that the laws of faces add, on B, by the normal force; on A the opposite; else 0 [m]
-    double lever;        ///< radius at which all of an area's friction resists turning about the normal; 0 for a point and in 2D [m]
-    double spread[6]; ///< second moments of the area of touch about its middle, by the area: xx, yy, zz, xy, xz, yz; all 0: a point [m^2]
+    double delta;    ///< effective overlap, which the law is asked with; <= 0: apart [m]
+    pls_vec3 normal; ///< unit, from A to B
+    pls_vec3 point;  ///< where the normal force acts, in the world [m]
+    pls_vec3 middle; ///< where friction acts: the same, but for areas and lines of touch their middle, at the height of `point` [m]
+    double weight;   ///< d(delta)/d(approach): 1 for points; laws of faces and lines have less or more (volume: A/A0)
+    double
+        energy_delta; ///< overlap at which a linear spring holds the energy of the contact; `delta` but for the laws of faces and lines [m]
+    double depth;     ///< penetration depth, for guards [m]
+    double twist;     ///< couple about the normal that the laws of faces add, on B, by the normal force; on A the opposite; else 0 [m]
+    double lever;     ///< radius at which all of an area's friction resists turning about the normal; 0 for a point and in 2D [m]
+    double spread
+        [6]; ///< second moments of the area (line) of touch about its middle, by the area (length): xx, yy, zz, xy, xz, yz; all 0: a point [m^2]
 } pls_touch;
 
 /// One contact. The answer depends on poses, options and state only. Half-spaces come as B.

@@ -13,7 +13,7 @@
 // and the normal is the mean of the two normals, both good to second order. The spring is carried along by the smallest rotation that takes the old normal to the new one, and
 // turned about it by the angle of the pair's mean spin.
 //
-// Areas. Bodies that lie on each other with faces touch over an area (`spread` of pls_touch), on which each place rubs and damps by itself. Turning about the normal is
+// Areas. Bodies that lie on each other with faces touch over an area (`spread` of pls_touch), others along a line, on which each place rubs and damps by itself. Turning about the normal is
 // slip at a lever (`lever`): the third component of spring, slip velocity and shear force, along the normal, is that of turning, and the law treats all three as
 // one vector. So turning has the stiffness, the dashpots and the energy of the law, and shares the cone with sliding: |Fs|^2 + (couple/lever)^2 <= (mu Fn)^2, the ellipsoid by
 // which Howe & Cutkosky (1996) approximate the limit surface of sliding patches. Rocking about axes in the face: the law is asked for its normal force at four
