@@ -50,7 +50,8 @@ typedef struct pls_part_tree pls_part_tree;
 
 typedef struct pls_shape_input
 {
-    const double *values;   ///< as the table of parameters says
+    const double *values;   ///< as the table of parameters says; null: all defaults
+    size_t value_count;     ///< of them; with fewer than the table has the shape is refused, more are not read
     const pls_vec3 *points; ///< of the table's row of kind PLS_PARAMETER_POINTS, in 2D with z = 0
     size_t point_count;
     const char *path;            ///< of its row of kind PLS_PARAMETER_PATH; null: not given

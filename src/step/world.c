@@ -162,14 +162,15 @@ pls_status pls_world_use_shape(pls_world *world, const char *name, pls_shape *sh
     return PLS_OK;
 }
 
-pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, pls_shape_id *id)
+pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, size_t value_count,
+                               pls_shape_id *id)
 {
     *id = (pls_shape_id){0};
     PLS_TRY(check_name(name, "a shape"));
     char owner[PLS_NAME_SIZE + 16];
     snprintf(owner, sizeof owner, "shape '%s'", name);
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = value_count};
     PLS_TRY(pls_shape_make(ops, world->def.dimension, &input, owner, &shape));
     pls_status status = pls_world_use_shape(world, name, shape, id);
     pls_shape_free(shape);
