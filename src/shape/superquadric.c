@@ -8,7 +8,8 @@
 // the components of n (by symmetry y and n are taken positive), where all derivatives are smooth, even at the flat and the sharp places of the surface, where
 // those of h or of the surface itself are infinite: with alpha = (X/k)^P, beta = 1 - alpha, gamma = (k/h)^Q, zeta = 1 - gamma the products n_i s_i and
 // n_i n_j d s_i / d n_j are polynomials of these. Damping (Levenberg 1944) makes every step a rise. Outside there is one maximum. Inside there may be several, one
-// for each nearby part of the surface, hence several starts. An error of n counts squared in the distance.
+// for each nearby part of the surface, and some that lie close together or are hardly higher than what is between them: it is sought from all local maxima of a fine net of
+// normals, in steps too short to jump from one to another. An error of n counts squared in the distance.
 
 #include "shape/builtin.h"
 #include "shape/mass_quadrature.h"
@@ -144,9 +145,10 @@ static bool damped_step(const search *s, const place *at, double damping, double
     return true;
 }
 
-static void climb(const search *s, place *at)
+/// To the maximum above `at`, by steps that change no logarithm by more than `longest`.
+static void climb(const search *s, double longest, place *at)
 {
-    const double size = fmax(fmax(s->half[0], s->half[1]), s->half[2]), longest = 3.0;
+    const double size = fmax(fmax(s->half[0], s->half[1]), s->half[2]);
     double damping = 1e-6 * size;
     look(s, at);
     for (int k = 0; k < MOST_STEPS; ++k)
@@ -182,26 +184,93 @@ static double gauge_normal(const search *s, double w[3])
     return all;
 }
 
+// ---- the net of normals -------------------------------------------------------------------------------------------------------------------------------------
+//
+// With (X, Y, Z) = (a n_x, b n_y, c n_z), its meshes are ratios of X to Y and of their norm to Z, from the levels below: the sides and edges of shapes that are nearly
+// polytopes then lie on its lines. n is scaled to h(n) = 1: F is (n . y - 1) / |n|, and costs no more than a square root.
+
+enum { LEVELS = 25 };
+static const double levels[LEVELS] = {-6.8, -5.2, -4.1, -3.2, -2.5, -1.9, -1.4, -1.0, -0.7, -0.45, -0.25, -0.1, 0.0,
+                                      0.1,  0.25, 0.45, 0.7,  1.0,  1.4,  1.9,  2.5,  3.2,  4.1,   5.2,   6.8};
+
+/// Logarithms of two numbers whose ratio is e^level and whose p-norm is 1.
+static void on_unit_ball(double level, double p, double logs[2])
+{
+    double share, all = log_norm(level, 0.0, p, &share);
+    logs[0] = level - all;
+    logs[1] = -all;
+}
+
+/// Log n for the mesh of levels i and j.
+static void normal_of_net(const search *s, int i, int j, double w[3])
+{
+    double flat[2], high[2] = {0.0, 0.0};
+    on_unit_ball(levels[i], s->P, flat);
+    if (s->count == 3) on_unit_ball(levels[j], s->Q, high);
+    for (int k = 0; k < 2; ++k) w[k] = flat[k] + high[0] - log(s->half[k]);
+    w[2] = high[1] - log(s->half[2]);
+}
+
+/// F on the net; in 2D it has one column.
+static void cast_net(const search *s, double F[LEVELS][LEVELS])
+{
+    double along[LEVELS], square[LEVELS], side[LEVELS], top[LEVELS];
+    for (int k = 0; k < LEVELS; ++k)
+    {
+        double logs[2];
+        on_unit_ball(levels[k], s->P, logs);
+        const double x = exp(logs[0]) / s->half[0], y = exp(logs[1]) / s->half[1];
+        along[k] = x * s->y[0] + y * s->y[1];
+        square[k] = x * x + y * y;
+        if (s->count == 2) continue;
+        on_unit_ball(levels[k], s->Q, logs);
+        side[k] = exp(logs[0]);
+        top[k] = exp(logs[1]) / s->half[2];
+    }
+    if (s->count == 2) side[0] = 1.0, top[0] = 0.0;
+    for (int i = 0; i < LEVELS; ++i)
+        for (int j = 0; j < (s->count == 2 ? 1 : LEVELS); ++j)
+            F[i][j] = (side[j] * along[i] + top[j] * s->y[2] - 1.0) / sqrt(side[j] * side[j] * square[i] + top[j] * top[j]);
+}
+
+static bool is_summit(double (*F)[LEVELS], int columns, int i, int j)
+{
+    for (int k = i > 0 ? i - 1 : 0; k <= i + 1 && k < LEVELS; ++k)
+        for (int l = j > 0 ? j - 1 : 0; l <= j + 1 && l < columns; ++l)
+            if (F[k][l] > F[i][j]) return false;
+    return true;
+}
+
+static place highest_inside(const search *s)
+{
+    const int columns = s->count == 2 ? 1 : LEVELS;
+    double F[LEVELS][LEVELS];
+    place best = {.value = -INFINITY};
+    cast_net(s, F);
+    for (int i = 0; i < LEVELS; ++i)
+        for (int j = 0; j < columns; ++j)
+        {
+            if (!is_summit(F, columns, i, j)) continue;
+            place other = {.value = 0.0};
+            normal_of_net(s, i, j, other.w);
+            climb(s, 1.0, &other);
+            if (other.value > best.value) best = other;
+        }
+    return best;
+}
+
 static place find_normal(const pls_shape *shape, pls_vec3 X)
 {
     const double *v = shape->values;
     search s = {.count = shape->dimension, .y = {fabs(X.x), fabs(X.y), fabs(X.z)}};
     memcpy(s.half, v, sizeof s.half);
-    if (s.count == 2) s.half[2] = 0.0;
     s.P = dual_exponent(v[EAST_WEST]);
     s.Q = dual_exponent(s.count == 2 ? v[EAST_WEST] : v[NORTH_SOUTH]);
     if (s.count == 2) s.half[2] = s.half[0], s.y[2] = 0.0;
-    place best = {.value = 0.0};
-    bool inside = gauge_normal(&s, best.w) < 0.0;
-    climb(&s, &best);
-    for (int k = 1; inside && k < 1 << s.count; ++k) // towards each side, edge and corner of the octant
-    {
-        place other = {.value = 0.0};
-        for (int i = 0; i < s.count; ++i) other.w[i] = (k >> i & 1 ? 0.0 : -4.0) - log(s.half[i]);
-        climb(&s, &other);
-        if (other.value > best.value) best = other;
-    }
-    return best;
+    place start = {.value = 0.0};
+    if (gauge_normal(&s, start.w) < 0.0) return highest_inside(&s);
+    climb(&s, 3.0, &start);
+    return start;
 }
 
 static double sdf(const pls_shape *shape, pls_vec3 X) { return find_normal(shape, X).value - shape->values[ROUNDING]; }
