@@ -82,6 +82,9 @@ typedef struct pls_shape_ops
     /// Its gradient, of length one outside.
     pls_vec3 (*gradient)(const pls_shape *shape, pls_vec3 X);
     bool (*is_convex)(const pls_shape *shape);
+    /// Of a convex shape, where it costs much less than the distance: a convex function of X that is 0 on the surface and less inside, and its gradient. Pictures follow
+    /// rays by it.
+    double (*level)(const pls_shape *shape, pls_vec3 X, pls_vec3 *gradient);
     /// The point of a convex shape that lies furthest along n, a radius `margin` less.
     pls_vec3 (*support)(const pls_shape *shape, pls_vec3 n);
     /// Derivative of the support point with respect to n (symmetric: xx, yy, zz, xy, xz, yz) [m], for `smooth` shapes.

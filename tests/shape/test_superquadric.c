@@ -184,11 +184,45 @@ static void the_nearest_of_places_that_hardly_differ_is_found(void **state)
     }
 }
 
+/// 0 on the surface, convex (never below the plane of any other point) and with the gradient of differences; rounded it is the distance.
+static void level_is_convex_and_zero_on_the_surface(void **state)
+{
+    (void)state;
+    static const double examples[][6] = {{0.6, 0.8, 1.0, 0.5, 0.7},
+                                         {0.8, 0.8, 0.8, 0.1, 0.1},
+                                         {0.8, 1.0, 0.6, 1.9, 1.9},
+                                         {0.8, 1.0, 0.6, 0.1, 1.9},
+                                         {0.5, 0.4, 0.3, 0.7, 0.6, 0.1}};
+    for (size_t e = 0; e < sizeof examples / sizeof *examples; ++e)
+        for (int dimension = 2; dimension <= 3; ++dimension)
+        {
+            pls_shape *s = make(dimension, examples[e]);
+            pls_random random = pls_random_stream(13, e, PLS_FOR_USER);
+            const double rounding = examples[e][5], h = 1e-6;
+            for (int k = 0; k < 200; ++k)
+            {
+                const pls_vec3 X = random_point(s, 1.7, &random), Y = random_point(s, 1.7, &random);
+                pls_vec3 slope, ignored;
+                const double level = s->ops->level(s, X, &slope);
+                assert_true(s->ops->level(s, Y, &ignored) >= level + pls_dot(slope, pls_sub(Y, X)) - 1e-12);
+                if (rounding > 0.0)
+                    assert_true(fabs(level - pls_shape_sdf(s, X)) < 1e-14);
+                else
+                    assert_true(fabs(s->ops->level(s, pls_scale(X, 1.0 / gauge(s, X)), &ignored)) < 1e-14);
+                const double differs =
+                    s->ops->level(s, pls_add(X, pls_scale(Y, h)), &ignored) - s->ops->level(s, pls_sub(X, pls_scale(Y, h)), &ignored);
+                assert_true(fabs(differs / (2.0 * h) - pls_dot(slope, Y)) < 1e-4 * (1.0 + pls_length(slope)));
+            }
+            pls_shape_free(s);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distance_is_that_of_the_nearest_point_of_the_surface),
         cmocka_unit_test(the_nearest_of_places_that_hardly_differ_is_found),
+        cmocka_unit_test(level_is_convex_and_zero_on_the_surface),
     };
     return cmocka_run_group_tests_name("superquadric", tests, NULL, NULL);
 }
