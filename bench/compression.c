@@ -191,7 +191,7 @@ static pls_status add_walls(pls_world *world, const packing *p, pls_material_id 
         {{0, 0, 0}, {half, -half, 0, 0}}, {{0, p->side[1], 0}, {half, half, 0, 0}},
         {{0, 0, 0}, {1, 0, 0, 0}},        {{0, 0, p->side[2]}, {0, 1, 0, 0}},
     };
-    PLS_TRY(pls_world_add_shape(world, "wall", plane, NULL, &wall.shape));
+    PLS_TRY(pls_world_add_shape(world, "wall", plane, NULL, 0, &wall.shape));
     wall.material = material;
     wall.motion.axes = PLS_AXIS_ALL;
     for (int k = 0; k < 6; ++k)
@@ -218,7 +218,7 @@ static pls_status build(const packing *p, pls_world **world)
     PLS_TRY(set_law(*world, ball.material));
     const pls_shape_ops *sphere = find_shape("sphere");
     if (!sphere) return pls_fail(PLS_NOT_FOUND, "there is no shape 'sphere'");
-    PLS_TRY(pls_world_add_shape(*world, "ball", sphere, &radius, &ball.shape));
+    PLS_TRY(pls_world_add_shape(*world, "ball", sphere, &radius, 1, &ball.shape));
     PLS_TRY(pls_world_reserve_bodies(*world, sphere_count(p) + 6));
     for (size_t n = 0; n < sphere_count(p); ++n)
     {

@@ -81,7 +81,8 @@ static pls_shape *make_shape(const char *name)
             double z = 1.0 - (2.0 * p + 1.0) / e->points, r = sqrt(1.0 - z * z), angle = 2.399963229728653 * p;
             point[p] = pls_vec(0.5 * r * cos(angle), 0.4 * r * sin(angle), 0.35 * z);
         }
-        pls_shape_input input = {.values = e->values, .points = point, .point_count = (size_t)e->points};
+        pls_shape_input input = {
+            .values = e->values, .value_count = sizeof e->values / sizeof *e->values, .points = point, .point_count = (size_t)e->points};
         pls_shape *shape = NULL;
         if (pls_shape_make(e->ops, 3, &input, name, &shape) != PLS_OK) stop(pls_last_message());
         return shape;

@@ -136,7 +136,7 @@ static pls_status add_walls(const heap *h, pls_material_id material)
                   {{0, 0, 0}, {half, -half, 0, 0}},
                   {{0, side, 0}, {half, half, 0, 0}},
                   {{0, 0, 0}, {1, 0, 0, 0}}};
-    PLS_TRY(pls_world_add_shape(h->world, "wall", plane, NULL, &wall.shape));
+    PLS_TRY(pls_world_add_shape(h->world, "wall", plane, NULL, 0, &wall.shape));
     wall.material = material;
     wall.motion.axes = PLS_AXIS_ALL;
     for (int k = 0; k < 5; ++k)

@@ -50,7 +50,8 @@ typedef struct pls_part_tree pls_part_tree;
 
 typedef struct pls_shape_input
 {
-    const double *values;   ///< as the table of parameters says
+    const double *values;   ///< as the table of parameters says; null: all defaults
+    size_t value_count;     ///< of them; with fewer than the table has the shape is refused, more are not read
     const pls_vec3 *points; ///< of the table's row of kind PLS_PARAMETER_POINTS, in 2D with z = 0
     size_t point_count;
     const char *path;            ///< of its row of kind PLS_PARAMETER_PATH; null: not given
@@ -81,6 +82,9 @@ typedef struct pls_shape_ops
     /// Its gradient, of length one outside.
     pls_vec3 (*gradient)(const pls_shape *shape, pls_vec3 X);
     bool (*is_convex)(const pls_shape *shape);
+    /// Of a convex shape, where it costs much less than the distance: a convex function of X that is 0 on the surface and less inside, and its gradient. Pictures follow
+    /// rays by it.
+    double (*level)(const pls_shape *shape, pls_vec3 X, pls_vec3 *gradient);
     /// The point of a convex shape that lies furthest along n, a radius `margin` less.
     pls_vec3 (*support)(const pls_shape *shape, pls_vec3 n);
     /// Derivative of the support point with respect to n (symmetric: xx, yy, zz, xy, xz, yz) [m], for `smooth` shapes.

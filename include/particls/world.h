@@ -97,9 +97,11 @@ pls_status pls_world_create(const pls_world_def *def, pls_world **world);
 void pls_world_destroy(pls_world *world);
 
 /// @name Building
-/// All of these may also be called between steps. `values` holds the parameters of `ops` in order of its table; null: all defaults.
+/// All of these may also be called between steps. `values` holds the parameters of `ops` in order of its table; null: all defaults. For a shape `value_count` says
+/// how many there are; too few are refused.
 /// @{
-pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, pls_shape_id *id);
+pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, size_t value_count,
+                               pls_shape_id *id);
 /// A shape that is made already; the world keeps it, the caller still frees its own hold.
 pls_status pls_world_use_shape(pls_world *world, const char *name, pls_shape *shape, pls_shape_id *id);
 pls_status pls_world_add_material(pls_world *world, const pls_material_def *def, pls_material_id *id);

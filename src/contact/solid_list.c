@@ -34,7 +34,8 @@ static int by_key(const void *a, const void *b)
     int order = compare_u32(p->number_i, q->number_i);
     if (order == 0) order = compare_u32(p->number_j, q->number_j);
     if (order == 0) order = compare_u32(p->part_i, q->part_i);
-    return order ? order : compare_u32(p->part_j, q->part_j);
+    if (order == 0) order = compare_u32(p->part_j, q->part_j);
+    return order ? order : compare_u32(p->image, q->image);
 }
 
 void pls_solid_records_sort(pls_solid_records *records)
@@ -121,6 +122,7 @@ static pls_status add_candidate(pls_solid_list *list, const pls_solid_source *s,
     memset(&list->memory[c], 0, sizeof list->memory[c]);
     list->memory[c].number_i = i->number, list->memory[c].number_j = j->number;
     list->memory[c].part_i = part_i, list->memory[c].part_j = part_j;
+    if (j->flags & PLS_BODY_UNBOUNDED) list->memory[c].image = pls_image_key(pair->shift);
     return PLS_OK;
 }
 
@@ -165,34 +167,109 @@ static pls_status parts_near(const pls_posed *wall, pls_vec3 X, double radius, p
     return PLS_OK;
 }
 
-/// Bodies near one wall. A half-space that turns sweeps far points quickly: every body is in its list then.
+/// A box along the axes of the world.
+typedef struct world_box
+{
+    double lower[3], upper[3];
+} world_box;
+
+static world_box box_of_wall(const pls_posed *wall)
+{
+    const pls_vec3 low = wall->shape->lower, up = wall->shape->upper;
+    world_box box = {.lower = {INFINITY, INFINITY, INFINITY}, .upper = {-INFINITY, -INFINITY, -INFINITY}};
+    for (int k = 0; k < 8; ++k)
+    {
+        const pls_vec3 corner = pls_posed_world(wall, pls_vec(k & 1 ? up.x : low.x, k & 2 ? up.y : low.y, k & 4 ? up.z : low.z));
+        const double x[3] = {corner.x, corner.y, corner.z};
+        for (int a = 0; a < 3; ++a) box.lower[a] = fmin(box.lower[a], x[a]), box.upper[a] = fmax(box.upper[a], x[a]);
+    }
+    return box;
+}
+
+/// A wall may reach as far as the box repeats, so that it and its images are one; further, they would lie on each other. The thickness of its pieces may.
+static pls_status check_wall_fits(const pls_solid_source *s, uint32_t wall, const pls_posed *posed, const world_box *box)
+{
+    const double fits = 1.0 + 1e-9, thickness = 2.0 * posed->scale * posed->shape->part[0].shape->margin;
+    for (int a = 0; a < s->domain->dimension; ++a)
+    {
+        const double edge = s->domain->edge[a], length = box->upper[a] - box->lower[a] - thickness;
+        if (s->domain->periodic[a] && length > edge * fits)
+            return pls_fail(
+                PLS_INVALID_ARGUMENT,
+                "the wall of pieces that is body %u is %g m long along %c, where the box repeats after %g m: it would lie on its "
+                "own image. Cut it to one period",
+                s->bodies->kind[wall].number, length, "xyz"[a], edge);
+    }
+    return PLS_OK;
+}
+
+/// Images of the wall along one axis that may come within `radius` of x; all of them 0 where space does not repeat.
+static void images_near(const pls_domain *domain, const world_box *box, int axis, double x, double radius, int image[2])
+{
+    const double edge = domain->edge[axis], reach = radius * (1.0 + 1e-9);
+    image[0] = image[1] = 0;
+    if (!domain->periodic[axis]) return;
+    image[0] = (int)fmax(INT16_MIN, ceil((x - reach - box->upper[axis]) / edge));
+    image[1] = (int)fmin(INT16_MAX, floor((x + reach - box->lower[axis]) / edge));
+}
+
+/// Candidates of one body with the pieces of a wall and of its images.
+static pls_status pieces_near(pls_solid_list *list, const pls_solid_source *s, uint32_t wall, const pls_posed *posed, const world_box *box,
+                              uint32_t row, part_numbers *found)
+{
+    const pls_body_place *p = &s->bodies->place[row];
+    const double x[3] = {p->x, p->y, p->z}, radius = p->radius + s->gap, *edge = s->domain->edge;
+    const uint32_t parts = pls_part_count(s->shape[s->bodies->kind[row].shape]);
+    int image[3][2];
+    for (int a = 0; a < 3; ++a) images_near(s->domain, box, a, x[a], radius, image[a]);
+    for (int i = image[0][0]; i <= image[0][1]; ++i)
+        for (int j = image[1][0]; j <= image[1][1]; ++j)
+            for (int k = image[2][0]; k <= image[2][1]; ++k)
+            {
+                const pls_near_pair pair = {.owner = row, .partner = wall, .shift = {(int16_t)i, (int16_t)j, (int16_t)k}};
+                pls_vec3 X = pls_vec(x[0], x[1], x[2]); // as the wall itself sees it
+                if (s->domain->any_periodic) X = pls_sub(X, pls_vec(i * edge[0], j * edge[1], k * edge[2]));
+                PLS_TRY(parts_near(posed, X, radius, found));
+                for (uint32_t own = 0; own < parts; ++own)
+                    for (size_t m = 0; m < found->count; ++m) PLS_TRY(add_candidate(list, s, &pair, own, found->part[m]));
+            }
+    return PLS_OK;
+}
+
+/// Bodies near a wall of pieces.
 static pls_status one_wall(pls_solid_list *list, const pls_solid_source *s, uint32_t wall, part_numbers *found)
+{
+    const pls_bodies *b = s->bodies;
+    const pls_posed posed = posed_body(s, wall);
+    const world_box box = box_of_wall(&posed);
+    PLS_TRY(check_wall_fits(s, wall, &posed, &box));
+    for (uint32_t row = 0; row < b->count; ++row)
+    {
+        if ((b->kind[row].flags & PLS_BODY_UNBOUNDED) || !pls_pair_matters(b, row, wall)) continue;
+        PLS_TRY(pieces_near(list, s, wall, &posed, &box, row, found));
+    }
+    return PLS_OK;
+}
+
+/// Bodies near a half-space. One that turns sweeps far points quickly: every body is in its list then.
+static pls_status one_half_space(pls_solid_list *list, const pls_solid_source *s, uint32_t wall)
 {
     const pls_bodies *b = s->bodies;
     const pls_body_place *w = &b->place[wall];
     const pls_body_spin *spin = &b->spin[wall];
-    const bool plane = !(b->kind[wall].flags & PLS_BODY_SOLID);
     const pls_vec3 n = pls_wall_normal(&b->orientation[wall], s->domain->dimension);
-    const pls_posed posed = posed_body(s, wall);
     double gap = s->gap;
-    if (plane && (spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0 || (b->kind[wall].flags & PLS_BODY_SPECIAL))) gap = INFINITY;
+    if (spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0 || (b->kind[wall].flags & PLS_BODY_SPECIAL)) gap = INFINITY;
     for (uint32_t row = 0; row < b->count; ++row)
     {
         const pls_body_place *p = &b->place[row];
-        if ((b->kind[row].flags & PLS_BODY_UNBOUNDED) || (plane && !(b->kind[row].flags & PLS_BODY_SOLID))) continue;
+        if ((b->kind[row].flags & PLS_BODY_UNBOUNDED) || !(b->kind[row].flags & PLS_BODY_SOLID)) continue;
         if (!pls_pair_matters(b, row, wall)) continue;
         const pls_near_pair pair = {.owner = row, .partner = wall};
+        const double height = n.x * (p->x - w->x) + n.y * (p->y - w->y) + n.z * (p->z - w->z);
+        if (!(height < p->radius + gap)) continue;
         const uint32_t parts = pls_part_count(s->shape[b->kind[row].shape]);
-        if (plane)
-        {
-            double height = n.x * (p->x - w->x) + n.y * (p->y - w->y) + n.z * (p->z - w->z);
-            if (!(height < p->radius + gap)) continue;
-            for (uint32_t k = 0; k < parts; ++k) PLS_TRY(add_candidate(list, s, &pair, k, 0));
-            continue;
-        }
-        PLS_TRY(parts_near(&posed, pls_vec(p->x, p->y, p->z), p->radius + gap, found));
-        for (uint32_t k = 0; k < parts; ++k)
-            for (size_t m = 0; m < found->count; ++m) PLS_TRY(add_candidate(list, s, &pair, k, found->part[m]));
+        for (uint32_t k = 0; k < parts; ++k) PLS_TRY(add_candidate(list, s, &pair, k, 0));
     }
     return PLS_OK;
 }
@@ -204,7 +281,9 @@ static pls_status add_walls(pls_solid_list *list, const pls_solid_source *s)
     for (uint32_t number = 0; status == PLS_OK && number < s->bodies->numbers; ++number)
     {
         uint32_t row = s->bodies->row_of[number];
-        if (row != PLS_NO_ROW && (s->bodies->kind[row].flags & PLS_BODY_UNBOUNDED)) status = one_wall(list, s, row, &found);
+        if (row == PLS_NO_ROW || !(s->bodies->kind[row].flags & PLS_BODY_UNBOUNDED)) continue;
+        const bool pieces = (s->bodies->kind[row].flags & PLS_BODY_SOLID) != 0;
+        status = pieces ? one_wall(list, s, row, &found) : one_half_space(list, s, row);
     }
     pls_release(&found.part);
     return status;
@@ -216,6 +295,15 @@ static pls_status add_walls(pls_solid_list *list, const pls_solid_source *s)
 static const pls_solid_memory *find_record(const pls_solid_records *records, const pls_solid_memory *key)
 {
     return records->count ? bsearch(key, records->entry, records->count, sizeof *records->entry, by_key) : NULL;
+}
+
+/// The image of a wall that a record means: of those with its key the one nearest to `here`.
+static int16_t image_of_key(uint32_t key, int axis, int16_t here)
+{
+    const int there = (int)(key >> (2 - axis) * PLS_IMAGE_BITS & (PLS_IMAGES - 1));
+    int further = (there - here) & (PLS_IMAGES - 1);
+    if (further >= PLS_IMAGES / 2) further -= PLS_IMAGES;
+    return (int16_t)(here + further);
 }
 
 /// Candidates of pairs that touched but have left the gap within a step. `listed`: the candidates so far, sorted by key.
@@ -231,7 +319,12 @@ static pls_status add_kept(pls_solid_list *list, const pls_solid_source *s, cons
         if (pair.owner == PLS_NO_ROW || pair.partner == PLS_NO_ROW || !pls_pair_matters(b, pair.owner, pair.partner)) continue;
         const pls_body_place *p = &b->place[pair.owner], *q = &b->place[pair.partner];
         const double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z};
-        for (int a = 0; a < 3; ++a) pair.shift[a] = pls_nearest_image(d[a], s->domain->edge[a]);
+        const unsigned flags = b->kind[pair.partner].flags;
+        for (int a = 0; a < 3; ++a)
+        {
+            const int16_t nearest = pls_nearest_image(d[a], s->domain->edge[a]);
+            pair.shift[a] = !(flags & PLS_BODY_UNBOUNDED) ? nearest : flags & PLS_BODY_SOLID ? image_of_key(record->image, a, nearest) : 0;
+        }
         PLS_TRY(add_candidate(list, s, &pair, record->part_i, record->part_j));
     }
     return PLS_OK;
@@ -271,7 +364,7 @@ static void put_back(pls_solid_list *list, const pls_solid_records *records)
 /// Candidates as they were found, to be sorted.
 typedef struct found_pair
 {
-    uint32_t lower, upper, part_i, part_j;
+    uint32_t lower, upper, part_i, part_j, image;
     pls_solid_pair pair;
     uint32_t number_i, number_j;
 } found_pair;
@@ -282,7 +375,8 @@ static int by_rows(const void *a, const void *b)
     int order = compare_u32(p->lower, q->lower);
     if (order == 0) order = compare_u32(p->upper, q->upper);
     if (order == 0) order = compare_u32(p->part_i, q->part_i);
-    return order ? order : compare_u32(p->part_j, q->part_j);
+    if (order == 0) order = compare_u32(p->part_j, q->part_j);
+    return order ? order : compare_u32(p->image, q->image);
 }
 
 static pls_status order_candidates(pls_solid_list *list)
@@ -297,6 +391,7 @@ static pls_status order_candidates(pls_solid_list *list)
                                 .upper = p->row_i < p->row_j ? p->row_j : p->row_i,
                                 .part_i = m->part_i,
                                 .part_j = m->part_j,
+                                .image = m->image,
                                 .pair = *p,
                                 .number_i = m->number_i,
                                 .number_j = m->number_j};
@@ -308,6 +403,7 @@ static pls_status order_candidates(pls_solid_list *list)
         memset(&list->memory[c], 0, sizeof list->memory[c]);
         list->memory[c].number_i = found[c].number_i, list->memory[c].number_j = found[c].number_j;
         list->memory[c].part_i = found[c].part_i, list->memory[c].part_j = found[c].part_j;
+        list->memory[c].image = found[c].image;
     }
     pls_release(&found);
     return PLS_OK;

@@ -30,8 +30,8 @@ typedef struct pls_solid_memory
 {
     uint32_t number_i, number_j; ///< persistent numbers
     uint32_t part_i, part_j;
-    uint32_t touches; ///< at the last step
-    uint32_t spare;
+    uint32_t image; ///< which of a wall's images j is, `pls_image_key` of its shift; 0 for other pairs, of which one image at most is near
+    uint32_t touches;                    ///< at the last step
     double spring[3];                    ///< tangential spring; along the normal: what turning on an area of touch has loaded [m]
     double history[PLS_LAW_MAX_HISTORY]; ///< the law's own numbers
     double normal[3];                    ///< at the last step, from i to j
@@ -51,6 +51,16 @@ typedef struct pls_solid_pair
     uint8_t spare;
 } pls_solid_pair;
 
+/// Images of a wall that are near the same body are close to each other: this many along each axis tell them apart.
+enum { PLS_IMAGE_BITS = 10, PLS_IMAGES = 1 << PLS_IMAGE_BITS };
+
+static inline uint32_t pls_image_key(const int16_t shift[3])
+{
+    uint32_t key = 0;
+    for (int a = 0; a < 3; ++a) key = key << PLS_IMAGE_BITS | ((uint32_t)shift[a] & (PLS_IMAGES - 1));
+    return key;
+}
+
 /// A block of work: candidates first .. last, all of each pair of bodies.
 typedef struct pls_solid_block
 {
@@ -60,7 +70,7 @@ typedef struct pls_solid_block
 /// Zero-initialise; `pls_solid_list_free` releases.
 typedef struct pls_solid_list
 {
-    pls_solid_pair *pair; ///< in order of (lower row, upper row, part of i, part of j)
+    pls_solid_pair *pair; ///< in order of (lower row, upper row, part of i, part of j, image)
     pls_solid_memory *memory;
     pls_touch *touch; ///< of the last step
     double *slot;
@@ -101,7 +111,7 @@ static inline bool pls_pair_is_solid(const pls_bodies *bodies, uint32_t a, uint3
 }
 
 /// Make the list: all pairs of parts nearer than the gap and all that touch in `records`, with what `records` holds of them.
-/// NOT_FOUND names two materials without a law.
+/// NOT_FOUND names two materials without a law, INVALID_ARGUMENT a wall of pieces that is longer than a periodic edge.
 pls_status pls_solid_list_build(pls_solid_list *list, const pls_solid_source *source, const pls_solid_records *records);
 void pls_solid_list_free(pls_solid_list *list);
 size_t pls_solid_list_bytes(const pls_solid_list *list);

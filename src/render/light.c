@@ -6,6 +6,8 @@
 
 enum { NEAREST_STEPS = 3 }; ///< towards the point of a ray that is nearest to a convex shape
 
+static const double level_enough = 0.01; ///< slope of the distance along the ray at which it is the least, but for its square
+
 /// A ray to the light beside a body, in the body's frame. Lengths are those of the world.
 typedef struct shadow_ray
 {
@@ -20,9 +22,13 @@ static double shadow_distance(const shadow_ray *r, double t)
     return r->scale * pls_shape_sdf(r->shape, pls_add(r->O, pls_scale(r->D, t / r->scale)));
 }
 
-static double shadow_slope(const shadow_ray *r, double t)
+/// Distance and slope in one.
+static double shadow_descent(const shadow_ray *r, double t, double *slope)
 {
-    return pls_dot(pls_shape_gradient(r->shape, pls_add(r->O, pls_scale(r->D, t / r->scale))), r->D);
+    pls_vec3 gradient;
+    double phi = pls_stage_distance(r->shape, pls_add(r->O, pls_scale(r->D, t / r->scale)), &gradient);
+    *slope = pls_dot(gradient, r->D);
+    return r->scale * phi;
 }
 
 /// What passes at a distance phi after the way t.
@@ -32,25 +38,54 @@ static double pass_at(const shadow_ray *r, double t, double phi)
     return phi < r->eps ? 0.0 : phi < wide ? phi / wide : 1.0;
 }
 
+/// What passes, where that is clear without distances: nothing or all. Else -1, and `from` is where the distance still falls. Each plane that a level set touches leaves the shape behind it: the ray goes from plane to plane
+/// as it does to a body that is seen, and where it misses, it comes no closer than to where the last two planes cross.
+static double pass_clearly(const shadow_ray *r, double *from)
+{
+    double t = r->from, last_t = t, last = 0.0, last_rate = 0.0; // the last plane: distance at last_t, and its rate
+    if (!r->shape->ops->level) return -1.0;
+    for (int k = 0; k < PLS_STAGE_MOST_STEPS && t <= r->to; ++k)
+    {
+        pls_vec3 slope;
+        const double level = pls_stage_level(r->shape, pls_add(r->O, pls_scale(r->D, t / r->scale)), &slope);
+        const double length = pls_length(slope), distance = r->scale * level / length, rate = pls_dot(slope, r->D) / length;
+        if (distance < 0.0) return 0.0;
+        if (rate >= 0.0)
+        {
+            // last + last_rate (x - last_t) = distance + rate (x - t), where last_rate < 0
+            const double fall = rate - last_rate,
+                         x = k > 0 && fall > 0.0 ? (last - last_rate * last_t - distance + rate * t) / fall : r->from;
+            *from = last_t;
+            return distance + rate * (fmax(x, r->from) - t) > fmin(r->widest, r->softness * r->to) ? 1.0 : -1.0;
+        }
+        last_t = t, last = distance, last_rate = rate;
+        t -= distance / rate;
+    }
+    return -1.0;
+}
+
 /// Distances from a convex shape fall and rise along the ray: Newton's method from plane to plane until they rise, then the least one between by regula falsi of the slopes.
 static double pass_convex(const shadow_ray *r)
 {
     double low = r->from, slope_low = 0.0, t = r->from;
+    const double clear = pass_clearly(r, &t);
+    if (clear >= 0.0) return clear;
     for (int k = 0; k < PLS_STAGE_MOST_STEPS && t <= r->to; ++k)
     {
-        double phi = shadow_distance(r, t), slope;
+        double slope, phi = shadow_descent(r, t, &slope);
         if (phi < r->eps) return 0.0;
-        if ((slope = shadow_slope(r, t)) >= 0.0)
+        if (slope >= 0.0)
         {
             double high = t, slope_high = slope;
             for (int n = 0; n < NEAREST_STEPS && slope_low < 0.0 && slope_high > 0.0; ++n)
             {
                 t = low - slope_low * (high - low) / (slope_high - slope_low);
-                slope = shadow_slope(r, t);
+                phi = shadow_descent(r, t, &slope);
+                if (fabs(slope) < level_enough) break;
                 *(slope < 0.0 ? &low : &high) = t;
                 *(slope < 0.0 ? &slope_low : &slope_high) = slope;
             }
-            return pass_at(r, t, shadow_distance(r, t));
+            return pass_at(r, t, phi);
         }
         if (t == r->to) return pass_at(r, t, phi);
         low = t;

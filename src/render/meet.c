@@ -65,6 +65,18 @@ static double surface_between(const pls_shape *shape, pls_vec3 O, pls_vec3 D, do
     return outside;
 }
 
+double pls_stage_distance(const pls_shape *shape, pls_vec3 X, pls_vec3 *gradient)
+{
+    *gradient = pls_shape_gradient(shape, X);
+    if (!shape->convex || !shape->ops->gradient || !shape->ops->support) return pls_shape_sdf(shape, X);
+    return pls_dot(*gradient, pls_sub(X, pls_shape_support(shape, *gradient))); // the plane of the nearest point is that far away
+}
+
+double pls_stage_level(const pls_shape *shape, pls_vec3 X, pls_vec3 *slope)
+{
+    return shape->ops->level ? shape->ops->level(shape, X, slope) : pls_stage_distance(shape, X, slope);
+}
+
 /// What is left of a ray behind all faces of a convex polytope.
 static bool meet_polytope(const pls_polytope *p, pls_vec3 O, pls_vec3 D, double from, double to, double *t_hit)
 {
@@ -81,8 +93,8 @@ static bool meet_polytope(const pls_polytope *p, pls_vec3 O, pls_vec3 D, double 
     return true;
 }
 
-/// A convex shape lies behind the plane through its nearest point: the ray goes on to that plane, which is Newton's method, from outside all the way. Where the plane turns away the
-/// ray has missed. All in the shape's frame, where lengths are those of the world over `scale`.
+/// A convex shape lies behind the plane through its nearest point, or where the linear part of another convex function is 0: the ray goes on to that plane, which is Newton's
+/// method, from outside all the way. Where the plane turns away the ray has missed. All in the shape's frame, where lengths are those of the world over `scale`.
 static bool trace_convex(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double from, double to, double *t_hit)
 {
     if (shape->margin == 0.0 && shape->polytope && shape->polytope->face_count > 3)
@@ -91,12 +103,13 @@ static bool trace_convex(const pls_shape *shape, pls_vec3 O, pls_vec3 D, double 
     for (int k = 0; k < PLS_STAGE_MOST_STEPS && t <= to; ++k)
     {
         pls_vec3 X = pls_add(O, pls_scale(D, t));
-        double phi = pls_shape_sdf(shape, X);
+        pls_vec3 slope;
+        double level = pls_stage_level(shape, X, &slope);
         *t_hit = t;
-        if (phi < eps) return true;
-        double away = pls_dot(pls_shape_gradient(shape, X), D);
+        if (level < eps * pls_length(slope)) return true;
+        double away = pls_dot(slope, D);
         if (away >= 0.0) return false;
-        t -= phi / away;
+        t -= level / away;
     }
     return false;
 }

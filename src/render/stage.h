@@ -71,6 +71,10 @@ pls_stage_hit pls_stage_next(const pls_stage *s, const pls_render_ray *ray, uint
 bool pls_stage_within(const pls_render_ray *ray, pls_vec3 centre, double radius, double *from, double *to);
 /// Narrow a way down to what lies within a box that is thickened by `grow`; false: nothing.
 bool pls_stage_within_box(pls_vec3 O, pls_vec3 D, pls_vec3 lower, pls_vec3 upper, double grow, double *from, double *to);
+/// Distance of a point from a shape and its gradient, at the cost of one of them.
+double pls_stage_distance(const pls_shape *shape, pls_vec3 X, pls_vec3 *gradient);
+/// A function whose zero is the surface of a convex shape, for rays: the cheapest there is, and its gradient.
+double pls_stage_level(const pls_shape *shape, pls_vec3 X, pls_vec3 *slope);
 /// The part of a ray that lies on the side of the cut that is kept.
 void pls_stage_keep(const pls_stage *s, const pls_render_ray *ray, double *from, double *to);
 /// From `first` on.

@@ -164,6 +164,7 @@ static pls_status fill_input(pls_scene *scene, const pls_scene_shape *shape, sha
     const pls_node *map = shape->node->child[0];
     pls_scene_parameters(shape->ops->parameters, map, in->values);
     in->input.values = in->values;
+    in->input.value_count = (size_t)pls_parameter_values(shape->ops->parameters);
     for (const pls_parameter *row = shape->ops->parameters; row && row->name; ++row)
     {
         const pls_node *node = pls_node_get(map, row->name);

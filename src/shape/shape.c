@@ -12,6 +12,7 @@
 #include "shape/mass_quadrature.h"
 #include "shape/part_tree.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum {
@@ -386,18 +387,45 @@ typedef struct shape_with_values
     double values[3 * PLS_MAX_PARAMETERS];
 } shape_with_values;
 
+/// "half (3), epsilon1, epsilon2, rounding"
+static void list_numbers(const pls_parameter *table, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (const pls_parameter *row = table; row->name && used < size; ++row)
+    {
+        if (row->kind != PLS_PARAMETER_NUMBER) continue;
+        int more = snprintf(text + used, size - used, row->components > 1 ? "%s%s (%d)" : "%s%s", used > 0 ? ", " : "", row->name,
+                            row->components);
+        used += more > 0 ? (size_t)more : 0;
+    }
+}
+
+static pls_status take_values(const pls_shape_ops *ops, const pls_shape_input *input, const char *name, double *values)
+{
+    const size_t count = (size_t)pls_parameter_values(ops->parameters);
+    if (!input->values || count == 0)
+        pls_parameters_default(ops->parameters, values);
+    else if (input->value_count >= count)
+        memcpy(values, input->values, count * sizeof *values);
+    else
+    {
+        char numbers[256];
+        list_numbers(ops->parameters, numbers, sizeof numbers);
+        return pls_fail(PLS_INVALID_ARGUMENT, "%s: a %s takes %zu values, in this order: %s; `value_count` says that there are %zu", name,
+                        ops->name, count, numbers, input->value_count);
+    }
+    return pls_parameters_check(ops->parameters, values, name);
+}
+
 static pls_status fill(shape_with_values *block, const pls_shape_input *input, const char *name)
 {
     pls_shape *shape = &block->shape;
     const pls_shape_ops *ops = shape->ops;
-    const int count = pls_parameter_values(ops->parameters);
-    if (input->values && count > 0)
-        memcpy(block->values, input->values, (size_t)count * sizeof *block->values);
-    else
-        pls_parameters_default(ops->parameters, block->values);
-    PLS_TRY(pls_parameters_check(ops->parameters, shape->values, name));
+    PLS_TRY(take_values(ops, input, name, block->values));
     pls_shape_input mine = *input;
     mine.values = shape->values;
+    mine.value_count = (size_t)pls_parameter_values(ops->parameters);
     if (ops->prepare) PLS_TRY(ops->prepare(&mine, shape->dimension, &shape->data));
     return measure(shape, name);
 }

@@ -8,7 +8,8 @@
 // the components of n (by symmetry y and n are taken positive), where all derivatives are smooth, even at the flat and the sharp places of the surface, where
 // those of h or of the surface itself are infinite: with alpha = (X/k)^P, beta = 1 - alpha, gamma = (k/h)^Q, zeta = 1 - gamma the products n_i s_i and
 // n_i n_j d s_i / d n_j are polynomials of these. Damping (Levenberg 1944) makes every step a rise. Outside there is one maximum. Inside there may be several, one
-// for each nearby part of the surface, hence several starts. An error of n counts squared in the distance.
+// for each nearby part of the surface, and some that lie close together or are hardly higher than what is between them: it is sought from all local maxima of a fine net of
+// normals, in steps too short to jump from one to another. An error of n counts squared in the distance.
 
 #include "shape/builtin.h"
 #include "shape/mass_quadrature.h"
@@ -54,8 +55,8 @@ static double dual_exponent(double epsilon) { return 2.0 / (2.0 - epsilon); }
 /// What is to be found: the largest F for a point y >= 0.
 typedef struct search
 {
-    int count;                  ///< components of n: 2 or 3
-    double y[3], half[3], P, Q; ///< Q = P of two equal numbers in 2D, where it does not matter
+    int count;                               ///< components of n: 2 or 3
+    double y[3], half[3], log_half[3], P, Q; ///< Q = P of two equal numbers in 2D, where it does not matter
 } search;
 
 /// Where it is: log n, n of length 1, and there F, its gradient and Hessian with respect to log n.
@@ -64,20 +65,31 @@ typedef struct place
     double w[3], n[3], value, gradient[3], hessian[3][3];
 } place;
 
+static search search_of(const pls_shape *shape, pls_vec3 X)
+{
+    const double *v = shape->values;
+    search s = {.count = shape->dimension, .y = {fabs(X.x), fabs(X.y), fabs(X.z)}, .half = {v[0], v[1], v[2]}};
+    s.P = dual_exponent(v[EAST_WEST]);
+    s.Q = dual_exponent(s.count == 2 ? v[EAST_WEST] : v[NORTH_SOUTH]);
+    if (s.count == 2) s.half[2] = s.half[0], s.y[2] = 0.0;
+    for (int k = 0; k < 3; ++k) s.log_half[k] = log(s.half[k]);
+    return s;
+}
+
 /// || (A, B) ||_p from logarithms of A and B; `share` is the part of A^p in the sum.
 static double log_norm(double a, double b, double p, double *share)
 {
-    double most = fmax(a, b), x = exp(p * (a - most)), y = exp(p * (b - most));
-    *share = x / (x + y);
-    return most + log(x + y) / p;
+    const double most = fmax(a, b), least = fmin(a, b), less = exp(p * (least - most)), sum = 1.0 + less;
+    *share = (a < b ? less : 1.0) / sum;
+    return most + log(sum) / p;
 }
 
 /// h, n_i s_i and n_i n_j ds_i/dn_j.
 static double support_products(const search *s, const double w[3], double product[3], double curve[3][3])
 {
     double alpha, gamma = 1.0;
-    double log_h = log_norm(log(s->half[0]) + w[0], log(s->half[1]) + w[1], s->P, &alpha), beta = 1.0 - alpha;
-    if (s->count == 3) log_h = log_norm(log_h, log(s->half[2]) + w[2], s->Q, &gamma);
+    double log_h = log_norm(s->log_half[0] + w[0], s->log_half[1] + w[1], s->P, &alpha), beta = 1.0 - alpha;
+    if (s->count == 3) log_h = log_norm(log_h, s->log_half[2] + w[2], s->Q, &gamma);
     const double h = exp(log_h), zeta = 1.0 - gamma, part[3] = {gamma * alpha, gamma * beta, zeta};
     const double inner = (s->P - 1.0) * h * gamma * alpha * beta, outer = (s->Q - 1.0) * h * gamma * zeta, mix[3] = {alpha, beta, -1.0};
     for (int i = 0; i < 3; ++i)
@@ -92,12 +104,17 @@ static void look(const search *s, place *at)
 {
     double product[3], curve[3][3], square = 0.0, most = at->w[0], d[3] = {0.0};
     for (int i = 1; i < s->count; ++i) most = fmax(most, at->w[i]);
-    for (int i = 0; i < s->count; ++i) square += exp(2.0 * (at->w[i] - most));
     at->n[2] = 0.0;
     for (int i = 0; i < s->count; ++i)
     {
-        at->w[i] -= most + 0.5 * log(square);
-        at->n[i] = exp(at->w[i]);
+        at->n[i] = exp(at->w[i] - most);
+        square += at->n[i] * at->n[i];
+    }
+    const double longer = 1.0 / sqrt(square), log_length = most + 0.5 * log(square);
+    for (int i = 0; i < s->count; ++i)
+    {
+        at->w[i] -= log_length;
+        at->n[i] *= longer;
     }
     at->value = -support_products(s, at->w, product, curve);
     for (int i = 0; i < s->count; ++i)
@@ -144,9 +161,10 @@ static bool damped_step(const search *s, const place *at, double damping, double
     return true;
 }
 
-static void climb(const search *s, place *at)
+/// To the maximum above `at`, by steps that change no logarithm by more than `longest`.
+static void climb(const search *s, double longest, place *at)
 {
-    const double size = fmax(fmax(s->half[0], s->half[1]), s->half[2]), longest = 3.0;
+    const double size = fmax(fmax(s->half[0], s->half[1]), s->half[2]);
     double damping = 1e-6 * size;
     look(s, at);
     for (int k = 0; k < MOST_STEPS; ++k)
@@ -175,33 +193,95 @@ static double gauge_normal(const search *s, double w[3])
     double p = s->P / (s->P - 1.0), q = s->Q / (s->Q - 1.0), share, t[3];
     for (int i = 0; i < 3; ++i) t[i] = log(fmax(s->y[i], 1e-12 * s->half[i]) / s->half[i]);
     double inner = log_norm(t[0], t[1], p, &share), all = s->count == 3 ? log_norm(inner, t[2], q, &share) : inner;
-    for (int i = 0; i < 2; ++i) w[i] = (p - 1.0) * (t[i] - inner) + (s->count == 3 ? (q - 1.0) * (inner - all) : 0.0) - log(s->half[i]);
-    w[2] = (q - 1.0) * (t[2] - all) - log(s->half[2]);
+    for (int i = 0; i < 2; ++i) w[i] = (p - 1.0) * (t[i] - inner) + (s->count == 3 ? (q - 1.0) * (inner - all) : 0.0) - s->log_half[i];
+    w[2] = (q - 1.0) * (t[2] - all) - s->log_half[2];
     double most = fmax(fmax(w[0], w[1]), s->count == 3 ? w[2] : -INFINITY);
     for (int i = 0; i < 3; ++i) w[i] = fmax(w[i] - most, -7.0);
     return all;
 }
 
+// ---- the net of normals -------------------------------------------------------------------------------------------------------------------------------------
+//
+// With (X, Y, Z) = (a n_x, b n_y, c n_z), its meshes are ratios of X to Y and of their norm to Z, from the levels below: the sides and edges of shapes that are nearly
+// polytopes then lie on its lines. n is scaled to h(n) = 1: F is (n . y - 1) / |n|, and costs no more than a square root.
+
+enum { LEVELS = 25 };
+static const double levels[LEVELS] = {-6.8, -5.2, -4.1, -3.2, -2.5, -1.9, -1.4, -1.0, -0.7, -0.45, -0.25, -0.1, 0.0,
+                                      0.1,  0.25, 0.45, 0.7,  1.0,  1.4,  1.9,  2.5,  3.2,  4.1,   5.2,   6.8};
+
+/// Logarithms of two numbers whose ratio is e^level and whose p-norm is 1.
+static void on_unit_ball(double level, double p, double logs[2])
+{
+    double share, all = log_norm(level, 0.0, p, &share);
+    logs[0] = level - all;
+    logs[1] = -all;
+}
+
+/// Log n for the mesh of levels i and j.
+static void normal_of_net(const search *s, int i, int j, double w[3])
+{
+    double flat[2], high[2] = {0.0, 0.0};
+    on_unit_ball(levels[i], s->P, flat);
+    if (s->count == 3) on_unit_ball(levels[j], s->Q, high);
+    for (int k = 0; k < 2; ++k) w[k] = flat[k] + high[0] - s->log_half[k];
+    w[2] = high[1] - s->log_half[2];
+}
+
+/// F on the net; in 2D it has one column.
+static void cast_net(const search *s, double F[LEVELS][LEVELS])
+{
+    double along[LEVELS], square[LEVELS], side[LEVELS], top[LEVELS];
+    for (int k = 0; k < LEVELS; ++k)
+    {
+        double logs[2];
+        on_unit_ball(levels[k], s->P, logs);
+        const double x = exp(logs[0]) / s->half[0], y = exp(logs[1]) / s->half[1];
+        along[k] = x * s->y[0] + y * s->y[1];
+        square[k] = x * x + y * y;
+        if (s->count == 2) continue;
+        on_unit_ball(levels[k], s->Q, logs);
+        side[k] = exp(logs[0]);
+        top[k] = exp(logs[1]) / s->half[2];
+    }
+    if (s->count == 2) side[0] = 1.0, top[0] = 0.0;
+    for (int i = 0; i < LEVELS; ++i)
+        for (int j = 0; j < (s->count == 2 ? 1 : LEVELS); ++j)
+            F[i][j] = (side[j] * along[i] + top[j] * s->y[2] - 1.0) / sqrt(side[j] * side[j] * square[i] + top[j] * top[j]);
+}
+
+static bool is_summit(double (*F)[LEVELS], int columns, int i, int j)
+{
+    for (int k = i > 0 ? i - 1 : 0; k <= i + 1 && k < LEVELS; ++k)
+        for (int l = j > 0 ? j - 1 : 0; l <= j + 1 && l < columns; ++l)
+            if (F[k][l] > F[i][j]) return false;
+    return true;
+}
+
+static place highest_inside(const search *s)
+{
+    const int columns = s->count == 2 ? 1 : LEVELS;
+    double F[LEVELS][LEVELS];
+    place best = {.value = -INFINITY};
+    cast_net(s, F);
+    for (int i = 0; i < LEVELS; ++i)
+        for (int j = 0; j < columns; ++j)
+        {
+            if (!is_summit(F, columns, i, j)) continue;
+            place other = {.value = 0.0};
+            normal_of_net(s, i, j, other.w);
+            climb(s, 1.0, &other);
+            if (other.value > best.value) best = other;
+        }
+    return best;
+}
+
 static place find_normal(const pls_shape *shape, pls_vec3 X)
 {
-    const double *v = shape->values;
-    search s = {.count = shape->dimension, .y = {fabs(X.x), fabs(X.y), fabs(X.z)}};
-    memcpy(s.half, v, sizeof s.half);
-    if (s.count == 2) s.half[2] = 0.0;
-    s.P = dual_exponent(v[EAST_WEST]);
-    s.Q = dual_exponent(s.count == 2 ? v[EAST_WEST] : v[NORTH_SOUTH]);
-    if (s.count == 2) s.half[2] = s.half[0], s.y[2] = 0.0;
-    place best = {.value = 0.0};
-    bool inside = gauge_normal(&s, best.w) < 0.0;
-    climb(&s, &best);
-    for (int k = 1; inside && k < 1 << s.count; ++k) // towards each side, edge and corner of the octant
-    {
-        place other = {.value = 0.0};
-        for (int i = 0; i < s.count; ++i) other.w[i] = (k >> i & 1 ? 0.0 : -4.0) - log(s.half[i]);
-        climb(&s, &other);
-        if (other.value > best.value) best = other;
-    }
-    return best;
+    const search s = search_of(shape, X);
+    place start = {.value = 0.0};
+    if (gauge_normal(&s, start.w) < 0.0) return highest_inside(&s);
+    climb(&s, 3.0, &start);
+    return start;
 }
 
 static double sdf(const pls_shape *shape, pls_vec3 X) { return find_normal(shape, X).value - shape->values[ROUNDING]; }
@@ -214,14 +294,43 @@ static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
     return pls_vec(copysign(at.n[0], X.x), copysign(at.n[1], X.y), copysign(at.n[2], X.z));
 }
 
+/// |x|_p of two non-negative numbers and its derivatives.
+static double norm(double x, double y, double p, double slope[2])
+{
+    const double most = fmax(x, y), less = fmin(x, y);
+    slope[0] = slope[1] = 0.0;
+    if (most == 0.0) return 0.0;
+    const double ratio = less / most, power = pow(ratio, p), sum = 1.0 + power, root = pow(sum, 1.0 / p);
+    const int larger = x >= y ? 0 : 1;
+    slope[larger] = root / sum;
+    slope[1 - larger] = ratio > 0.0 ? power / ratio * root / sum : 0.0;
+    return most * root;
+}
+
+/// The norm whose unit ball it is, less 1: in closed form. Of a rounded one there is only the distance.
+static double level(const pls_shape *shape, pls_vec3 X, pls_vec3 *slope)
+{
+    const double *v = shape->values;
+    if (v[ROUNDING] > 0.0)
+    {
+        place at = find_normal(shape, X);
+        *slope = pls_vec(copysign(at.n[0], X.x), copysign(at.n[1], X.y), copysign(at.n[2], X.z));
+        return at.value - v[ROUNDING];
+    }
+    double flat[2], high[2] = {1.0, 0.0}, all = norm(fabs(X.x) / v[0], fabs(X.y) / v[1], 2.0 / v[EAST_WEST], flat);
+    if (shape->dimension == 3) all = norm(all, fabs(X.z) / v[2], 2.0 / v[NORTH_SOUTH], high);
+    *slope = pls_vec(copysign(high[0] * flat[0] / v[0], X.x), copysign(high[0] * flat[1] / v[1], X.y),
+                     shape->dimension == 3 ? copysign(high[1] / v[2], X.z) : 0.0);
+    return all - 1.0;
+}
+
 // ---- support ------------------------------------------------------------------------------------------------------------------------------------------------
 
 static double products_at(const pls_shape *shape, pls_vec3 n, double least, double size[3], double product[3], double curve[3][3])
 {
-    const double *v = shape->values, w[3] = {fabs(n.x), fabs(n.y), fabs(n.z)};
+    const double w[3] = {fabs(n.x), fabs(n.y), fabs(n.z)};
     double logs[3];
-    search s = {
-        .count = shape->dimension, .half = {v[0], v[1], v[2]}, .P = dual_exponent(v[EAST_WEST]), .Q = dual_exponent(v[NORTH_SOUTH])};
+    const search s = search_of(shape, n);
     for (int i = 0; i < 3; ++i) size[i] = fmax(w[i], least), logs[i] = log(size[i]);
     return support_products(&s, logs, product, curve);
 }
@@ -316,6 +425,7 @@ const pls_shape_ops pls_superquadric_shape = {
     .smooth = true,
     .sdf = sdf,
     .gradient = gradient,
+    .level = level,
     .support = support,
     .support_gradient = support_gradient,
     .margin = margin,

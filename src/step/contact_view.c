@@ -14,7 +14,8 @@ static int by_numbers(const void *a, const void *b)
     if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
     if (p->number_j != q->number_j) return p->number_j < q->number_j ? -1 : 1;
     if (p->part_i != q->part_i) return p->part_i < q->part_i ? -1 : 1;
-    return p->part_j < q->part_j ? -1 : p->part_j > q->part_j;
+    if (p->part_j != q->part_j) return p->part_j < q->part_j ? -1 : 1;
+    return p->image < q->image ? -1 : p->image > q->image;
 }
 
 static void fill_entry(const pls_world *world, const pls_pair_section *section, size_t c, pls_contact_entry *e)
@@ -79,6 +80,7 @@ static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
                              .number_j = memory->number_j,
                              .part_i = memory->part_i,
                              .part_j = memory->part_j,
+                             .image = memory->image,
                              .row_i = pair->row_i,
                              .row_j = pair->row_j,
                              .wall = (b->kind[pair->row_j].flags & PLS_BODY_UNBOUNDED) != 0,

@@ -10,6 +10,7 @@ typedef struct pls_contact_entry
     uint32_t number_i, number_j; ///< persistent numbers
     uint32_t row_i, row_j;       ///< memory rows
     uint32_t part_i, part_j;     ///< parts of compounds and meshes, else 0
+    uint32_t image;              ///< of a wall of pieces in a periodic box, else 0
     bool wall;                   ///< j is unbounded
     pls_vec3 normal;             ///< from i to j
     pls_vec3 branch;             ///< d_c = X_j - X_i across periodic images; for a wall: foot point on the wall - X_i [m]

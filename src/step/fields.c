@@ -75,6 +75,8 @@ static const pls_field pair_fields[] = {
     {"body_j", PLS_U32, 1, PERSISTS | ID, "", "number of its partner (of the wall)", 0, offsetof(pls_solid_memory, number_j)},
     {"part_i", PLS_U32, 1, PERSISTS | ID, "", "part of a compound or a mesh, else 0", 0, offsetof(pls_solid_memory, part_i)},
     {"part_j", PLS_U32, 1, PERSISTS | ID, "", "part of the partner", 0, offsetof(pls_solid_memory, part_j)},
+    {"image", PLS_U32, 1, PERSISTS | ID, "", "which periodic image of a wall of pieces: 10 bits for each axis, x first", 0,
+     offsetof(pls_solid_memory, image)},
     {"touches", PLS_U32, 1, PERSISTS, "", "0 apart, 1 touches, 2 touches where a deeper contact of the same bodies acts already", 0,
      offsetof(pls_solid_memory, touches)},
     {"spring", PLS_F64, 3, PERSISTS, "m", "tangential spring; along the normal: what turning on an area of touch has loaded", 0,

@@ -189,6 +189,13 @@ static void take_out_solids(pls_near_pairs *near, const pls_bodies *bodies)
     near->count = kept;
 }
 
+/// The furthest images that solids touch count too, where the box stretches and carries them away.
+static void reach_of_images(pls_pair_list *list, const pls_solid_list *solids)
+{
+    for (size_t c = 0; c < solids->count; ++c)
+        for (int a = 0; a < 3; ++a) list->image_reach[a] = fmax(list->image_reach[a], fabs((double)solids->pair[c].shift[a]) + 1.0);
+}
+
 /// Both lists anew, with what contacts remember.
 static pls_status build_lists(pls_world *world)
 {
@@ -204,6 +211,7 @@ static pls_status build_lists(pls_world *world)
         status = pls_pair_list_build(&world->list, &world->bodies, &world->domain, &world->laws, &near, skin, world->state_count > 0,
                                      &world->memory);
     }
+    if (status == PLS_OK && world->domain.any_periodic) reach_of_images(&world->list, &world->solids);
     pls_near_pairs_free(&near);
     return status;
 }

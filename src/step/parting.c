@@ -21,7 +21,8 @@ static int by_numbers(const void *a, const void *b)
     if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
     if (p->number_j != q->number_j) return p->number_j < q->number_j ? -1 : 1;
     if (p->part_i != q->part_i) return p->part_i < q->part_i ? -1 : 1;
-    return p->part_j < q->part_j ? -1 : p->part_j > q->part_j;
+    if (p->part_j != q->part_j) return p->part_j < q->part_j ? -1 : 1;
+    return p->image < q->image ? -1 : p->image > q->image;
 }
 
 /// Tangential relative velocity in the middle of the step (what rows hold now) of two bodies that have just parted.
@@ -74,7 +75,8 @@ static struct pls_parted parted_of(const pls_world *world, const pls_pair_sectio
                                      .spring_squared = pls_dot(spring, spring),
                                      .history = history + 3};
     law->ops->energy(law->constants, &point, &normal, &shear);
-    return (struct pls_parted){b->kind[i].number, b->kind[j].number, 0, 0, i, j, normal + shear};
+    return (struct pls_parted){
+        .number_i = b->kind[i].number, .number_j = b->kind[j].number, .row_i = i, .row_j = j, .energy = normal + shear};
 }
 
 static unsigned long long any_ended(const uint8_t *bytes, size_t count)
@@ -120,8 +122,14 @@ pls_status pls_find_parted_solids(const pls_world *world, const pls_contact_inpu
                                          .history = memory->history};
         double normal, shear;
         law->ops->energy(law->constants, &point, &normal, &shear);
-        found->entry[found->count++] = (struct pls_parted){memory->number_i, memory->number_j, memory->part_i, memory->part_j,
-                                                           pair->row_i,      pair->row_j,      normal + shear};
+        found->entry[found->count++] = (struct pls_parted){.number_i = memory->number_i,
+                                                           .number_j = memory->number_j,
+                                                           .part_i = memory->part_i,
+                                                           .part_j = memory->part_j,
+                                                           .image = memory->image,
+                                                           .row_i = pair->row_i,
+                                                           .row_j = pair->row_j,
+                                                           .energy = normal + shear};
     }
     return PLS_OK;
 }

@@ -146,11 +146,6 @@ pls_status pls_world_use_shape(pls_world *world, const char *name, pls_shape *sh
     if (shape->dimension != world->def.dimension)
         return pls_fail(PLS_INVALID_ARGUMENT, "shape '%s' is made for %dD, this world is %dD", name, shape->dimension,
                         world->def.dimension);
-    if (shape->ops->wall && world->domain.any_periodic)
-        return pls_fail(PLS_INVALID_ARGUMENT,
-                        "shape '%s' is a wall made of pieces, which would end at the edges of a periodic box. Use planes, or a box that is "
-                        "not periodic",
-                        name);
     if (world->shape_count >= UINT16_MAX - 1) return pls_fail(PLS_LIMIT_EXCEEDED, "a world holds at most %d shapes", UINT16_MAX - 1);
     PLS_TRY(pls_reserve(&world->shape, &world->shape_capacity, world->shape_count + 1, sizeof *world->shape, "shapes"));
     PLS_TRY(pls_reserve(&world->shape_of, &world->shape_of_capacity, world->shape_count + 1, sizeof *world->shape_of, "shapes"));
@@ -162,14 +157,15 @@ pls_status pls_world_use_shape(pls_world *world, const char *name, pls_shape *sh
     return PLS_OK;
 }
 
-pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, pls_shape_id *id)
+pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, size_t value_count,
+                               pls_shape_id *id)
 {
     *id = (pls_shape_id){0};
     PLS_TRY(check_name(name, "a shape"));
     char owner[PLS_NAME_SIZE + 16];
     snprintf(owner, sizeof owner, "shape '%s'", name);
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = value_count};
     PLS_TRY(pls_shape_make(ops, world->def.dimension, &input, owner, &shape));
     pls_status status = pls_world_use_shape(world, name, shape, id);
     pls_shape_free(shape);

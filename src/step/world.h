@@ -71,7 +71,7 @@ typedef struct pls_skin_tuner
 /// A contact that ended in this step, and the energy it still held [J].
 struct pls_parted
 {
-    uint32_t number_i, number_j, part_i, part_j, row_i, row_j;
+    uint32_t number_i, number_j, part_i, part_j, image, row_i, row_j;
     double energy;
 };
 

@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -58,7 +59,7 @@ static int make_shapes(void **state)
             double x = pls_random_normal(&random), y = pls_random_normal(&random), z = pls_random_normal(&random);
             points[k] = pls_scale(pls_unit(pls_vec(x, y, examples[e].dimension == 2 ? 0.0 : z)), 0.8);
         }
-        const pls_shape_input input = {.values = examples[e].values, .points = points, .point_count = (size_t)examples[e].hull_points};
+        const pls_shape_input input = {VALUES(examples[e].values), .points = points, .point_count = (size_t)examples[e].hull_points};
         if (pls_shape_make(examples[e].ops, examples[e].dimension, &input, examples[e].name, &shapes[e]) != PLS_OK) return -1;
     }
     return 0;
@@ -236,7 +237,7 @@ static void a_corner_in_a_side(void **state)
     (void)state;
     const double half[6] = {0.5, 0.5, 0.5, 0.0}, t = 0.02;
     pls_shape *square = NULL;
-    const pls_shape_input input = {.values = half};
+    const pls_shape_input input = {VALUES(half)};
     assert_int_equal(pls_shape_make(&pls_box_shape, 2, &input, "square", &square), PLS_OK);
     const double eighth = M_PI / 8.0;
     pls_posed a = pls_pose(square, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0);

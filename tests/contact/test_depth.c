@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -134,10 +135,10 @@ static counts compare(const pls_shape *sa, const pls_shape *sb, uint64_t seed, b
     return c;
 }
 
-static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values)
+static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values, size_t count)
 {
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = count};
     assert_int_equal(pls_shape_make(ops, dimension, &input, "a shape", &shape), PLS_OK);
     return shape;
 }
@@ -146,7 +147,7 @@ static void spheres_in_closed_form(void **state)
 {
     (void)state;
     const double one = 1.0, other = 0.4;
-    pls_shape *a = make(&pls_sphere_shape, 3, &one), *b = make(&pls_sphere_shape, 3, &other);
+    pls_shape *a = make(&pls_sphere_shape, 3, &one, 1), *b = make(&pls_sphere_shape, 3, &other, 1);
     pls_posed pa = pls_pose(a, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0);
     for (int k = 1; k < 30; ++k)
     {
@@ -167,8 +168,8 @@ static void ellipsoids_against_a_search(void **state)
     const double first[4] = {1.0, 0.7, 0.5}, second[4] = {0.6, 1.1, 0.8}, radius = 0.7;
     for (int dimension = 2; dimension <= 3; ++dimension)
     {
-        pls_shape *a = make(&pls_ellipsoid_shape, dimension, first), *b = make(&pls_ellipsoid_shape, dimension, second),
-                  *c = make(&pls_sphere_shape, dimension, &radius);
+        pls_shape *a = make(&pls_ellipsoid_shape, dimension, COUNTED(first)), *b = make(&pls_ellipsoid_shape, dimension, COUNTED(second)),
+                  *c = make(&pls_sphere_shape, dimension, &radius, 1);
         const pls_shape *pair[3][2] = {{a, b}, {a, c}, {c, b}};
         for (int k = 0; k < 3; ++k)
         {

@@ -3,6 +3,7 @@
 #include "contact/faces.h"
 #include "shape/builtin.h"
 #include "support/solids.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -148,13 +149,17 @@ static void caps_of_spheres_and_ellipsoids(void **state)
         const pls_shape_ops *ops;
         int dimension;
         const double *values;
-    } cases[] = {
-        {&pls_sphere_shape, 3, radius}, {&pls_ellipsoid_shape, 3, half}, {&pls_sphere_shape, 2, radius}, {&pls_ellipsoid_shape, 2, half}};
+        size_t count;
+    } cases[] = {{&pls_sphere_shape, 3, COUNTED(radius)},
+                 {&pls_ellipsoid_shape, 3, COUNTED(half)},
+                 {&pls_sphere_shape, 2, COUNTED(radius)},
+                 {&pls_ellipsoid_shape, 2, COUNTED(half)}};
     for (size_t k = 0; k < 4; ++k)
         for (double d = 1e-4; d < 0.3; d *= 4.0)
         {
             const int dimension = cases[k].dimension;
-            pls_shape *s = solids_make(cases[k].ops, dimension, &(pls_shape_input){.values = cases[k].values}),
+            pls_shape *s = solids_make(cases[k].ops, dimension,
+                                       &(pls_shape_input){.values = cases[k].values, .value_count = cases[k].count}),
                       *ground = solids_plane(dimension);
             const pls_vec3 up = dimension == 2 ? pls_vec(0, 1, 0) : pls_vec(0, 0, 1);
             pls_posed p = at(s, pls_vec(0, 0, 0), solids_turn(dimension == 2 ? pls_vec(0, 0, 1) : pls_unit(pls_vec(1, 2, 3)), 0.7));
@@ -219,9 +224,9 @@ static void facets_of_a_floor_add_up_to_a_plane(void **state)
                      line_values[] = {[ROUNDED] = lift, [CLOSED] = 0.0};
         const pls_vec3 line[3] = {{-3, 0, 0}, {0.1, 0, 0}, {3, 0, 0}};
         pls_shape *ground = solids_plane(dimension);
-        pls_shape *floor = dimension == 3 ? solids_make(&pls_mesh_shape, 3, &(pls_shape_input){.values = mesh_values, .path = "floor.obj"})
-                                          : solids_make(&pls_polyline_shape, 2,
-                                                        &(pls_shape_input){.values = line_values, .points = line, .point_count = 3});
+        pls_shape *floor =
+            dimension == 3 ? solids_make(&pls_mesh_shape, 3, &(pls_shape_input){VALUES(mesh_values), .path = "floor.obj"})
+                           : solids_make(&pls_polyline_shape, 2, &(pls_shape_input){VALUES(line_values), .points = line, .point_count = 3});
         pls_shape *s = dimension == 2 ? solids_stone(2, 7, 0.0) : round & 2 ? solids_stone(3, 16, 0.05) : solids_box(3, 0.5, 0.3, 0.4, 0.1);
         const pls_posed below = at(ground, dimension == 2 ? pls_vec(0, lift, 0) : pls_vec(0, 0, lift), pls_quat_identity());
         pls_posed p = at(s, pls_vec(0, 0, 0), solids_turn(dimension == 2 ? pls_vec(0, 0, 1) : solids_direction(3), solids_uniform(0, 6)));
@@ -255,8 +260,8 @@ static void pairs_without_faces_are_left_alone(void **state)
     const double radius[4] = {0.5}, capsule[4] = {0.2, 0.5};
     static pls_vec3 many[400];
     for (int k = 0; k < 400; ++k) many[k] = pls_scale(solids_direction(3), 0.5);
-    pls_shape *s[] = {solids_make(&pls_sphere_shape, 3, &(pls_shape_input){.values = radius}),
-                      solids_make(&pls_capsule_shape, 3, &(pls_shape_input){.values = capsule}), solids_box(3, 0.5, 0.5, 0.5, 0.1),
+    pls_shape *s[] = {solids_make(&pls_sphere_shape, 3, &(pls_shape_input){VALUES(radius)}),
+                      solids_make(&pls_capsule_shape, 3, &(pls_shape_input){VALUES(capsule)}), solids_box(3, 0.5, 0.5, 0.5, 0.1),
                       solids_hull(3, many, 400, 0.0)};
     pls_shape *b = solids_box(3, 0.5, 0.5, 0.5, 0.0);
     assert_true(s[3]->polytope->face_count > PLS_MOST_FACES);

@@ -4,6 +4,7 @@
 
 #include "contact/narrow_phase.h"
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,10 +13,10 @@
 
 #include <cmocka.h>
 
-static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values)
+static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values, size_t count)
 {
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = count};
     if (pls_shape_make(ops, dimension, &input, "a shape", &shape) != PLS_OK) fail_msg("%s", pls_last_message());
     return shape;
 }
@@ -54,8 +55,8 @@ static void ball_at_face_edge_and_corner(void **state)
     (void)state;
     for (int rounded = 0; rounded < 2; ++rounded)
     {
-        pls_shape *box = make(&pls_box_shape, 3, (double[]){0.5, 0.4, 0.3, rounded ? 0.05 : 0.0}),
-                  *ball = make(&pls_ellipsoid_shape, 3, (double[]){0.2, 0.2, 0.2, 0.0});
+        pls_shape *box = make(&pls_box_shape, 3, NUMBERS(0.5, 0.4, 0.3, rounded ? 0.05 : 0.0)),
+                  *ball = make(&pls_ellipsoid_shape, 3, NUMBERS(0.2, 0.2, 0.2, 0.0));
         const pls_quat none = pls_quat_identity();
         const double r = rounded ? 0.05 : 0.0;
         const pls_vec3 centre[3] = {{0.1, -0.1, 0.48}, {0.61, 0.1, 0.43}, {0.6, 0.49, 0.41}};
@@ -74,7 +75,7 @@ static void ball_at_face_edge_and_corner(void **state)
 static void sides_of_cylinders(void **state)
 {
     (void)state;
-    pls_shape *can = make(&pls_cylinder_shape, 3, (double[]){0.2, 1.0, 0.0}), *pill = make(&pls_capsule_shape, 3, (double[]){0.1, 0.8});
+    pls_shape *can = make(&pls_cylinder_shape, 3, NUMBERS(0.2, 1.0, 0.0)), *pill = make(&pls_capsule_shape, 3, NUMBERS(0.1, 0.8));
     const pls_shape *second[2] = {can, pill};
     const double radius[2] = {0.2, 0.1};
     for (int k = 0; k < 2; ++k)
@@ -92,8 +93,7 @@ static void sides_of_cylinders(void **state)
 static void rim_on_face(void **state)
 {
     (void)state;
-    pls_shape *can = make(&pls_cylinder_shape, 3, (double[]){0.2, 0.6, 0.0}),
-              *box = make(&pls_box_shape, 3, (double[]){1.0, 1.0, 0.5, 0.0});
+    pls_shape *can = make(&pls_cylinder_shape, 3, NUMBERS(0.2, 0.6, 0.0)), *box = make(&pls_box_shape, 3, NUMBERS(1.0, 1.0, 0.5, 0.0));
     const double tilt = 0.4, below = 0.3 * cos(tilt) + 0.2 * sin(tilt);
     const pls_posed a = pls_pose(box, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0),
                     b = pls_pose(can, pls_vec(0.1, 0.2, 0.5 + below - 0.003), turn_about(pls_vec(1.0, 2.0, 0.0), tilt), 1.0);
@@ -105,8 +105,8 @@ static void rim_on_face(void **state)
 static void in_the_plane(void **state)
 {
     (void)state;
-    pls_shape *box = make(&pls_box_shape, 2, (double[]){0.5, 0.4, 0.1, 0.0}),
-              *disc = make(&pls_ellipsoid_shape, 2, (double[]){0.2, 0.2, 0.2, 0.0});
+    pls_shape *box = make(&pls_box_shape, 2, NUMBERS(0.5, 0.4, 0.1, 0.0)),
+              *disc = make(&pls_ellipsoid_shape, 2, NUMBERS(0.2, 0.2, 0.2, 0.0));
     const pls_posed a = pls_pose(box, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0),
                     over = pls_pose(disc, pls_vec(0.1, 0.59, 0.0), pls_quat_identity(), 1.0),
                     beside = pls_pose(disc, pls_vec(0.6, 0.5, 0.0), pls_quat_identity(), 1.0);
@@ -119,8 +119,7 @@ static void in_the_plane(void **state)
 static void what_is_no_point_is_refused(void **state)
 {
     (void)state;
-    pls_shape *box = make(&pls_box_shape, 3, (double[]){0.5, 0.4, 0.3, 0.0}),
-              *can = make(&pls_cylinder_shape, 3, (double[]){0.2, 0.6, 0.0});
+    pls_shape *box = make(&pls_box_shape, 3, NUMBERS(0.5, 0.4, 0.3, 0.0)), *can = make(&pls_cylinder_shape, 3, NUMBERS(0.2, 0.6, 0.0));
     double memory[PLS_FEATURE_MEMORY] = {0.0};
     pls_depth d;
     const pls_posed a = pls_pose(box, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0),
@@ -135,8 +134,8 @@ static void features_change_along_a_path(void **state)
 {
     (void)state;
     enum { STEPS = 4000 };
-    pls_shape *box = make(&pls_box_shape, 3, (double[]){0.5, 0.4, 0.3, 0.0}),
-              *egg = make(&pls_ellipsoid_shape, 3, (double[]){0.6, 0.4, 0.3, 0.0});
+    pls_shape *box = make(&pls_box_shape, 3, NUMBERS(0.5, 0.4, 0.3, 0.0)),
+              *egg = make(&pls_ellipsoid_shape, 3, NUMBERS(0.6, 0.4, 0.3, 0.0));
     const pls_narrow_options options = {.solver = PLS_SOLVER_DEPTH, .faces = PLS_FACES_POINT};
     pls_pair_state warm = {{0.0}};
     pls_narrow_counts warm_counts = {0}, cold_counts = {0};

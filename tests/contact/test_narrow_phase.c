@@ -3,6 +3,7 @@
 #include "support/narrow_oracle.h"
 
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,10 +41,10 @@ static void every_pair(int dimension)
 static void every_pair_in_space(void **state) { (void)state, every_pair(3); }
 static void every_pair_in_the_plane(void **state) { (void)state, every_pair(2); }
 
-static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values)
+static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values, size_t count)
 {
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = count};
     if (pls_shape_make(ops, dimension, &input, "a shape", &shape) != PLS_OK) fail_msg("%s", pls_last_message());
     return shape;
 }
@@ -99,7 +100,7 @@ static void cubes_aligned(void **state)
                  {{0.98, 0.999, 0.0}, 0.001}, {{1.0 - 1e-13, 0.0, 0.0}, 1e-13}};
     for (int dimension = 2; dimension <= 3; ++dimension)
     {
-        pls_shape *cube = make(&pls_box_shape, dimension, half);
+        pls_shape *cube = make(&pls_box_shape, dimension, COUNTED(half));
         pls_pair_state memory = {{0}};
         for (int k = 0; k < 2 * (int)(sizeof known / sizeof *known); ++k) // cold, then from each other's memory
         {
@@ -121,7 +122,7 @@ static void spheres_at_the_same_place(void **state)
 {
     (void)state;
     const double one = 1.0, other = 0.4;
-    pls_shape *a = make(&pls_sphere_shape, 3, &one), *b = make(&pls_sphere_shape, 3, &other);
+    pls_shape *a = make(&pls_sphere_shape, 3, &one, 1), *b = make(&pls_sphere_shape, 3, &other, 1);
     const pls_posed pa = pls_pose(a, pls_vec(1.0, 2.0, 3.0), pls_quat_identity(), 1.0),
                     pb = pls_pose(b, pls_vec(1.0, 2.0, 3.0), pls_quat_identity(), 1.0);
     pls_pair_state memory = {{0}};
@@ -173,7 +174,8 @@ static void a_torus(void **state)
 {
     (void)state;
     const double radius = 0.3, half[4] = {0.3, 0.2, 0.15, 0.0}; // no rounding
-    pls_shape *donut = make(&torus_ops, 3, NULL), *ball = make(&pls_sphere_shape, 3, &radius), *egg = make(&pls_ellipsoid_shape, 3, half);
+    pls_shape *donut = make(&torus_ops, 3, NULL, 0), *ball = make(&pls_sphere_shape, 3, &radius, 1),
+              *egg = make(&pls_ellipsoid_shape, 3, COUNTED(half));
     const pls_posed lying = pls_pose(donut, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0);
     for (int k = 0; k < 40; ++k)
     {

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "support/failing_allocator.h"
+#include "support/numbers.h"
 
 static void parameter_values(const pls_parameter *table, const char *const *names, const double *given, double *values)
 {
@@ -77,9 +78,9 @@ static pls_status build(pls_world *world)
     const pls_shape_ops *sphere = shape_named("sphere"), *plane = shape_named("plane");
     const pls_law_ops *law = law_named("viscoelastic");
     parameter_values(sphere->parameters, (const char *const[]){"radius", NULL}, (const double[]){0.5}, values);
-    PLS_TRY(pls_world_add_shape(world, "ball", sphere, values, &ball));
+    PLS_TRY(pls_world_add_shape(world, "ball", sphere, COUNTED(values), &ball));
     pls_parameters_default(plane->parameters, values);
-    PLS_TRY(pls_world_add_shape(world, "wall", plane, values, &wall));
+    PLS_TRY(pls_world_add_shape(world, "wall", plane, COUNTED(values), &wall));
     pls_material_def material = pls_default_material_def();
     strcpy(material.name, "grain");
     material.values.density = 1.0;

@@ -57,9 +57,9 @@ static inline lab make_lab(const pls_world_def *def, double radius, double densi
 {
     lab l = {0};
     done(pls_world_create(def, &l.world));
-    done(pls_world_add_shape(l.world, "ball", shape_named("sphere"), &radius, &l.ball));
+    done(pls_world_add_shape(l.world, "ball", shape_named("sphere"), &radius, 1, &l.ball));
     const double none[1] = {0};
-    done(pls_world_add_shape(l.world, "plane", shape_named("plane"), none, &l.plane));
+    done(pls_world_add_shape(l.world, "plane", shape_named("plane"), none, 1, &l.plane));
     pls_material_def material = pls_default_material_def();
     strcpy(material.name, "grain");
     material.values.density = density;

@@ -1,6 +1,7 @@
 // test_own.c -- observers of one's own in a C program: columns by dimension, defaults, memory, and what is refused.
 
 #include "observe/series.h"
+#include "support/numbers.h"
 
 #include <particls/memory.h>
 
@@ -60,7 +61,7 @@ static pls_world *world_with_a_ball(int dimension)
     assert_int_equal(pls_world_create(&def, &world), PLS_OK);
     const double radius[1] = {1.0};
     pls_shape_id ball;
-    assert_int_equal(pls_world_add_shape(world, "ball", pls_builtin_shapes()[0], radius, &ball), PLS_OK);
+    assert_int_equal(pls_world_add_shape(world, "ball", pls_builtin_shapes()[0], COUNTED(radius), &ball), PLS_OK);
     pls_material_def material = pls_default_material_def();
     strcpy(material.name, "grain");
     material.values.density = 1.0;

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "shape/builtin.h"
 #include "support/two_bodies.h"
+#include "support/numbers.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -104,7 +105,7 @@ static pls_shape *make(const example *e)
         points[k] = pls_scale(pls_unit(pls_vec(x, y, e->dimension == 2 ? 0.0 : z)), 0.8);
     }
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = e->values, .points = points, .point_count = (size_t)e->hull_points};
+    const pls_shape_input input = {VALUES(e->values), .points = points, .point_count = (size_t)e->hull_points};
     if (pls_shape_make(e->ops, e->dimension, &input, e->name, &shape) != PLS_OK)
         fprintf(stderr, "contact_methods: %s\n", pls_last_message());
     return shape;

@@ -3,6 +3,7 @@
 #include "render/render.h"
 
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -18,7 +19,7 @@ static pls_shape *make(const pls_shape_ops *ops, int dimension, double value)
 {
     double values[PLS_MAX_PARAMETERS] = {value};
     pls_shape *shape = NULL;
-    assert_int_equal(pls_shape_make(ops, dimension, &(pls_shape_input){.values = values}, "the shape", &shape), PLS_OK);
+    assert_int_equal(pls_shape_make(ops, dimension, &(pls_shape_input){VALUES(values)}, "the shape", &shape), PLS_OK);
     return shape;
 }
 

@@ -74,6 +74,9 @@ static void assert_refused(const char *source, const char *part)
 }
 
 #define PLUGIN_START "#include <particls/plugin.h>\n"
+#define TEXT_OF(x)   #x
+#define AS_TEXT(x)   TEXT_OF(x)
+#define THIS_VERSION AS_TEXT(PLS_API_VERSION)
 #define PLUGIN_API   "const uint32_t particls_plugin_api = PLS_API_VERSION;\n"
 
 static void plugins_that_are_no_good_are_refused_with_the_reason(void **state)
@@ -156,7 +159,7 @@ static void every_lie_of_a_plugin_is_found_when_it_is_loaded(void **state)
     static const char *const told[] = {
         "add_force was called with null",
         "the force 'push' lacks its evaluate",
-        "the force 'push' is made for version 2 of the plugin interface; this is version 3",
+        "the force 'push' is made for version 2 of the plugin interface; this is version " THIS_VERSION,
         "a force has no name",
         "'gravity' is a key of 'forces' already: give the force another name",
         "'my-push' cannot be the name of a force",
@@ -178,7 +181,7 @@ static void every_lie_of_a_plugin_is_found_when_it_is_loaded(void **state)
         "the observer 'eye' has update, but no memory that it could bring up to date",
         "the observer 'eye' wants to remember 65 numbers; at most 64 are possible",
         "'every' is a key of 'observe' already: give the observer another name",
-        "the observer 'eye' is made for version 2 of the plugin interface; this is version 3",
+        "the observer 'eye' is made for version 2 of the plugin interface; this is version " THIS_VERSION,
         "the contact law 'law' has a parameter 'between', which is a key of scenes there",
     };
     compile(liar);

@@ -3,6 +3,7 @@
 #include "shape/builtin.h"
 
 #include "base/random.h"
+#include "support/numbers.h"
 
 #include <particls/memory.h>
 
@@ -14,10 +15,10 @@
 
 #include <cmocka.h>
 
-static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values)
+static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values, size_t count)
 {
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = count};
     if (pls_shape_make(ops, dimension, &input, "shape 'x'", &shape) != PLS_OK) fail_msg("%s", pls_last_message());
     return shape;
 }
@@ -62,8 +63,8 @@ static void flush_boxes_are_one_box(void **state)
     for (int dimension = 2; dimension <= 3; ++dimension)
     {
         const double left[4] = {0.3, 0.2, 0.4, 0.0}, right[4] = {0.1, 0.2, 0.4, 0.0}, both[4] = {0.4, 0.2, 0.4, 0.0};
-        pls_shape *a = make(&pls_box_shape, dimension, left), *b = make(&pls_box_shape, dimension, right),
-                  *one = make(&pls_box_shape, dimension, both);
+        pls_shape *a = make(&pls_box_shape, dimension, COUNTED(left)), *b = make(&pls_box_shape, dimension, COUNTED(right)),
+                  *one = make(&pls_box_shape, dimension, COUNTED(both));
         const pls_shape_part parts[2] = {at(a, -0.1, 0.0, 0.0), at(b, 0.3, 0.0, 0.0)};
         pls_shape *pair = join(dimension, parts, 2);
         assert_int_equal(pair->part_count, 2);
@@ -116,7 +117,7 @@ static void parts_apart_are_added_up(void **state)
     for (int dimension = 2; dimension <= 3; ++dimension)
     {
         const double half[2][4] = {{0.3, 0.2, 0.25, 0.0}, {0.1, 0.3, 0.15, 0.0}};
-        pls_shape *a = make(&pls_box_shape, dimension, half[0]), *b = make(&pls_box_shape, dimension, half[1]);
+        pls_shape *a = make(&pls_box_shape, dimension, COUNTED(half[0])), *b = make(&pls_box_shape, dimension, COUNTED(half[1]));
         pls_shape_part parts[2] = {at(a, 0.1, 0.2, 0.0), at(b, 0.8, -0.3, dimension == 2 ? 0.0 : 0.4)};
         parts[0].orientation = dimension == 2 ? turn(0, 0, 1, 0.7) : turn(1, 2, -1, 0.7);
         parts[1].scale = 1.2;
@@ -149,7 +150,7 @@ static void overlaps_count_once(void **state)
 {
     (void)state;
     const double radius[1] = {1.0}, d = 1.1;
-    pls_shape *disc = make(&pls_disc_shape, 2, radius);
+    pls_shape *disc = make(&pls_disc_shape, 2, COUNTED(radius));
     const pls_shape_part parts[2] = {at(disc, 0.0, 0.0, 0.0), at(disc, d, 0.0, 0.0)};
     pls_shape *pair = join(2, parts, 2);
     assert_near(pair->mass.volume, 2.0 * M_PI - (2.0 * acos(0.5 * d) - 0.5 * d * sqrt(4.0 - d * d)), 1e-6);
@@ -157,7 +158,7 @@ static void overlaps_count_once(void **state)
     pls_shape_free(disc);
     pls_shape_free(pair);
     // Balls: the lens is pi (4 + d) (2 - d)^2 / 12.
-    pls_shape *ball = make(&pls_sphere_shape, 3, radius);
+    pls_shape *ball = make(&pls_sphere_shape, 3, COUNTED(radius));
     const pls_shape_part balls[2] = {at(ball, 0.0, 0.0, 0.0), at(ball, d, 0.0, 0.0)};
     pair = join(3, balls, 2);
     assert_near(pair->mass.volume, 8.0 / 3.0 * M_PI - M_PI * (4.0 + d) * (2.0 - d) * (2.0 - d) / 12.0, 1e-5);
@@ -182,7 +183,8 @@ static pls_shape *make_many(int dimension, pls_shape_part parts[MANY])
 {
     static pls_shape_ops ops;
     const double half[4] = {0.2, 0.1, 0.15, 0.02}, ball[1] = {0.15};
-    pls_shape *box = make(&pls_box_shape, dimension, half), *round = make(&pls_sphere_shape, dimension, ball), *whole = NULL;
+    pls_shape *box = make(&pls_box_shape, dimension, COUNTED(half)), *round = make(&pls_sphere_shape, dimension, COUNTED(ball)),
+              *whole = NULL;
     pls_random random = pls_random_stream(2, 0, PLS_FOR_USER);
     for (int k = 0; k < MANY; ++k)
     {
@@ -311,7 +313,7 @@ static void compounds_of_compounds_have_the_innermost_parts(void **state)
 {
     (void)state;
     const double ball[1] = {0.2};
-    pls_shape *sphere = make(&pls_sphere_shape, 3, ball);
+    pls_shape *sphere = make(&pls_sphere_shape, 3, COUNTED(ball));
     const pls_shape_part two[2] = {at(sphere, 0.5, 0.0, 0.0), at(sphere, -0.5, 0.0, 0.0)};
     pls_shape *inner = join(3, two, 2);
     pls_shape_part outer[2] = {at(inner, 0.0, 2.0, 0.0), at(sphere, 0.0, 0.0, 1.0)};
@@ -353,10 +355,11 @@ static void parts_that_no_grain_has_are_refused(void **state)
 {
     (void)state;
     const double ball[1] = {0.2}, none[1] = {0.0};
-    pls_shape *sphere = make(&pls_sphere_shape, 3, ball), *disc = make(&pls_disc_shape, 2, ball), *plane = make(&pls_plane_shape, 3, none);
+    pls_shape *sphere = make(&pls_sphere_shape, 3, COUNTED(ball)), *disc = make(&pls_disc_shape, 2, COUNTED(ball)),
+              *plane = make(&pls_plane_shape, 3, COUNTED(none));
     pls_shape_ops uneven = pls_sphere_shape;
     uneven.density = everywhere;
-    pls_shape *dense = make(&uneven, 3, ball);
+    pls_shape *dense = make(&uneven, 3, COUNTED(ball));
     pls_shape_part part = at(sphere, 0, 0, 0);
     refuse(NULL, 0, "a compound needs at least one part");
     part.scale = 0.0;

@@ -3,6 +3,7 @@
 #include "shape/mass_quadrature.h"
 
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,9 +37,9 @@ static pls_shape *make(const pls_shape_ops *ops, int dimension, const pls_shape_
     return shape;
 }
 
-static void check(const pls_shape_ops *ops, int dimension, const double *values, const pls_mass_properties *known)
+static void check(const pls_shape_ops *ops, int dimension, const double *values, size_t count, const pls_mass_properties *known)
 {
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = count};
     pls_shape *shape = make(ops, dimension, &input);
     expect_mass(shape, known);
     pls_shape_free(shape);
@@ -50,8 +51,8 @@ static void balls_and_discs(void **state)
 {
     (void)state;
     const double R = 0.7, V = 4.0 / 3.0 * M_PI * R * R * R, I = 0.4 * V * R * R, A = M_PI * R * R;
-    check(&pls_sphere_shape, 3, (double[]){R}, &(pls_mass_properties){.volume = V, .inertia = {I, I, I}});
-    check(&pls_sphere_shape, 2, (double[]){R}, &(pls_mass_properties){.volume = A, .inertia = {[2] = 0.5 * A * R * R}});
+    check(&pls_sphere_shape, 3, NUMBERS(R), &(pls_mass_properties){.volume = V, .inertia = {I, I, I}});
+    check(&pls_sphere_shape, 2, NUMBERS(R), &(pls_mass_properties){.volume = A, .inertia = {[2] = 0.5 * A * R * R}});
 }
 
 static void boxes(void **state)
@@ -64,8 +65,8 @@ static void boxes(void **state)
         const double values[4] = {a, b, c, 0.0};
         const pls_mass_properties known = {.volume = V,
                                            .inertia = {V / 3 * (b * b + c * c), V / 3 * (a * a + c * c), V / 3 * (a * a + b * b)}};
-        check(&pls_box_shape, 3, values, &known);
-        check(&pls_box_shape, 2, values, &(pls_mass_properties){.volume = A, .inertia = {[2] = A / 3 * (a * a + b * b)}});
+        check(&pls_box_shape, 3, COUNTED(values), &known);
+        check(&pls_box_shape, 2, COUNTED(values), &(pls_mass_properties){.volume = A, .inertia = {[2] = A / 3 * (a * a + b * b)}});
     }
 }
 
@@ -74,18 +75,18 @@ static void ellipsoids(void **state)
     (void)state;
     const double a = 1.0, b = 0.6, c = 0.3, V = 4.0 / 3.0 * M_PI * a * b * c, A = M_PI * a * b, values[4] = {a, b, c, 0.0};
     const pls_mass_properties known = {.volume = V, .inertia = {V / 5 * (b * b + c * c), V / 5 * (a * a + c * c), V / 5 * (a * a + b * b)}};
-    check(&pls_ellipsoid_shape, 3, values, &known);
-    check(&pls_ellipsoid_shape, 2, values, &(pls_mass_properties){.volume = A, .inertia = {[2] = A / 4 * (a * a + b * b)}});
+    check(&pls_ellipsoid_shape, 3, COUNTED(values), &known);
+    check(&pls_ellipsoid_shape, 2, COUNTED(values), &(pls_mass_properties){.volume = A, .inertia = {[2] = A / 4 * (a * a + b * b)}});
 }
 
 static void cylinders_and_capsules(void **state)
 {
     (void)state;
     const double r = 0.4, l = 1.0, V = M_PI * r * r * l, xx = V * (r * r / 4 + l * l / 12), B = 4.0 / 3.0 * M_PI * r * r * r;
-    check(&pls_cylinder_shape, 3, (double[]){r, l, 0.0}, &(pls_mass_properties){.volume = V, .inertia = {xx, xx, V * r * r / 2}});
+    check(&pls_cylinder_shape, 3, NUMBERS(r, l, 0.0), &(pls_mass_properties){.volume = V, .inertia = {xx, xx, V * r * r / 2}});
     // Half balls at the ends of the straight part; their centres of mass are 3/8 r from the flat side.
     const double along = V * r * r / 2 + 0.4 * B * r * r, across = xx + B * (0.4 * r * r + l * l / 4 + 3.0 / 8.0 * l * r);
-    check(&pls_capsule_shape, 3, (double[]){r, l}, &(pls_mass_properties){.volume = V + B, .inertia = {along, across, across}});
+    check(&pls_capsule_shape, 3, NUMBERS(r, l), &(pls_mass_properties){.volume = V + B, .inertia = {along, across, across}});
 }
 
 /// With corners at the origin and the ends of the axes, (1, 0.8, 0.5) long.
@@ -95,7 +96,7 @@ static void simplices(void **state)
     const double a = 1.0, b = 0.8, c = 0.5, V = a * b * c / 6.0, A = a * b / 2.0;
     const pls_vec3 corner[4] = {{0, 0, 0}, {a, 0, 0}, {0, b, 0}, {0, 0, c}};
     const double none[2] = {0.0, 0.0};
-    pls_shape *shape = make(&pls_polyhedron_shape, 3, &(pls_shape_input){.values = none, .points = corner, .point_count = 4});
+    pls_shape *shape = make(&pls_polyhedron_shape, 3, &(pls_shape_input){VALUES(none), .points = corner, .point_count = 4});
     // Second moments about the centre of a simplex of n dimensions: x_i^2 V n/((n+1)^2 (n+2)), -x_i x_j V/((n+1)^2 (n+2)).
     const double s = V * 3.0 / 80.0, m = V / 80.0;
     expect_mass(shape, &(pls_mass_properties){
@@ -103,7 +104,7 @@ static void simplices(void **state)
                            .centre = {a / 4, b / 4, c / 4},
                            .inertia = {s * (b * b + c * c), s * (a * a + c * c), s * (a * a + b * b), m * a * b, m * a * c, m * b * c}});
     pls_shape_free(shape);
-    shape = make(&pls_polygon_shape, 2, &(pls_shape_input){.values = none, .points = corner, .point_count = 3});
+    shape = make(&pls_polygon_shape, 2, &(pls_shape_input){VALUES(none), .points = corner, .point_count = 3});
     expect_mass(shape, &(pls_mass_properties){.volume = A, .centre = {a / 3, b / 3, 0.0}, .inertia = {[2] = A / 18.0 * (a * a + b * b)}});
     pls_shape_free(shape);
 }
@@ -122,10 +123,10 @@ static void rounded_shapes_and_hulls(void **state)
     {
         const pls_shape_ops *ops;
         pls_shape_input input;
-    } shape[4] = {{&pls_box_shape, {.values = (double[]){1.0, 0.6, 0.4, 0.1}}},
-                  {&pls_cylinder_shape, {.values = (double[]){0.4, 1.0, 0.1}}},
-                  {&pls_polyhedron_shape, {.values = (double[]){0.0, 0.0}, .points = corner, .point_count = 24}},
-                  {&pls_superquadric_shape, {.values = (double[]){0.9, 0.7, 0.5, 0.5, 0.7, 0.0}}}};
+    } shape[4] = {{&pls_box_shape, {.values = (double[]){1.0, 0.6, 0.4, 0.1}, .value_count = 4}},
+                  {&pls_cylinder_shape, {.values = (double[]){0.4, 1.0, 0.1}, .value_count = 3}},
+                  {&pls_polyhedron_shape, {.values = (double[]){0.0, 0.0}, .value_count = 2, .points = corner, .point_count = 24}},
+                  {&pls_superquadric_shape, {.values = (double[]){0.9, 0.7, 0.5, 0.5, 0.7, 0.0}, .value_count = 6}}};
     for (int k = 0; k < 4; ++k)
     {
         pls_shape *made = make(shape[k].ops, 3, &shape[k].input);
@@ -142,7 +143,7 @@ static const pls_parameter none[] = {{.name = NULL}};
 static void check_sdf(double (*sdf)(const pls_shape *, pls_vec3), const pls_mass_properties *known)
 {
     const pls_shape_ops ops = {.api_version = PLS_API_VERSION, .name = "mine", .parameters = none, .in_3d = true, .sdf = sdf};
-    check(&ops, 3, NULL, known);
+    check(&ops, 3, NULL, 0, known);
 }
 
 static double torus(const pls_shape *shape, pls_vec3 X)
@@ -247,7 +248,7 @@ static void a_density_that_grows(void **state)
                                .density = growing};
     const double e = exp(1.0), area = 1.2 * 0.8, M = area * (e - 1.0 / e), first = area * 2.0 / e, second = area * (e - 5.0 / e);
     const double xx = second - first * first / M, yy = M * 0.12, zz = M * 0.16 / 3.0;
-    check(&ops, 3, NULL, &(pls_mass_properties){.volume = M, .centre = {first / M, 0.0, 0.0}, .inertia = {yy + zz, xx + zz, xx + yy}});
+    check(&ops, 3, NULL, 0, &(pls_mass_properties){.volume = M, .centre = {first / M, 0.0, 0.0}, .inertia = {yy + zz, xx + zz, xx + yy}});
 }
 
 int main(void)

@@ -10,6 +10,7 @@
 #include "shape/mass_quadrature.h"
 #include "shape/builtin.h"
 #include "shape/polytope.h"
+#include "support/numbers.h"
 
 #include <string.h>
 
@@ -101,7 +102,7 @@ static pls_shape *make(const pls_shape_ops *ops, int dimension, size_t count, do
 {
     pls_shape *shape = NULL;
     const double values[2] = {rounding, 0.0}; // a polyhedron's second: the hull of a mesh is not asked for
-    pls_shape_input input = {.values = values, .points = cloud, .point_count = count};
+    pls_shape_input input = {VALUES(values), .points = cloud, .point_count = count};
     pls_status status = pls_shape_make(ops, dimension, &input, "shape 'stone'", &shape);
     if (status != PLS_OK) print_error("%s\n", pls_last_message());
     assert_int_equal(status, PLS_OK);
@@ -263,7 +264,7 @@ static void prisms_are_bases_times_heights(void **state)
         perimeter += pls_length(pls_sub(b, a));
     }
     double values[2] = {0.0, height};
-    const pls_shape_input input = {.values = values, .points = base, .point_count = SIDES + 1};
+    const pls_shape_input input = {VALUES(values), .points = base, .point_count = SIDES + 1};
     const pls_shape_input solid = {.points = corner, .point_count = 2 * SIDES};
     pls_shape *prism = NULL, *same = NULL;
     assert_int_equal(pls_shape_make(&pls_prism_shape, 3, &input, "x", &prism), PLS_OK);
@@ -287,7 +288,7 @@ static void prisms_are_bases_times_heights(void **state)
     assert_true(fabs(prism->mass.volume / known - 1.0) < 1e-6);
     assert_true(fabs(prism->upper.z - 0.5 * height - r) < 1e-15);
     pls_shape_free(prism);
-    const pls_shape_input flat = {.values = values, .points = base, .point_count = 2};
+    const pls_shape_input flat = {VALUES(values), .points = base, .point_count = 2};
     assert_int_equal(pls_shape_make(&pls_prism_shape, 3, &flat, "x", &prism), PLS_INVALID_ARGUMENT);
     assert_string_equal(pls_last_message(), "the base of a prism needs at least 3 points, not 2");
 }

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "shape/builtin.h"
 #include "shape/proximal.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -57,7 +58,7 @@ static pls_shape *make(const example *e)
         points[k] = pls_unit(pls_vec(x, y, z));
     }
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = e->values, .points = points, .point_count = (size_t)e->hull_points};
+    const pls_shape_input input = {VALUES(e->values), .points = points, .point_count = (size_t)e->hull_points};
     if (pls_shape_make(e->ops, e->dimension, &input, e->name, &shape) != PLS_OK) fail_msg("%s: %s", e->name, pls_last_message());
     return shape;
 }

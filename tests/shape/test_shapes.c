@@ -4,6 +4,9 @@
 #include "shape/mass_quadrature.h"
 
 #include "base/random.h"
+#include "support/numbers.h"
+
+#include <particls/memory.h>
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -51,7 +54,7 @@ enum { EXAMPLES = sizeof examples / sizeof *examples, SIDE = 48 };
 static pls_shape *make_with(const pls_shape_ops *ops, const example *e)
 {
     pls_shape *shape = NULL;
-    pls_shape_input input = {.values = e->values};
+    pls_shape_input input = {VALUES(e->values)};
     if (pls_shape_make(ops, e->dimension, &input, e->name, &shape) != PLS_OK) fail_msg("%s: %s", e->name, pls_last_message());
     return shape;
 }
@@ -442,12 +445,13 @@ static void shapes_have_their_names_in_2d(void **state)
     {
         const pls_shape_ops *flat, *solid;
         const double *values;
-    } names[] = {{&pls_disc_shape, &pls_sphere_shape, values},
-                 {&pls_ellipse_shape, &pls_ellipsoid_shape, values},
-                 {&pls_half_plane_shape, &pls_plane_shape, none}};
+        size_t count;
+    } names[] = {{&pls_disc_shape, &pls_sphere_shape, COUNTED(values)},
+                 {&pls_ellipse_shape, &pls_ellipsoid_shape, COUNTED(values)},
+                 {&pls_half_plane_shape, &pls_plane_shape, COUNTED(none)}};
     for (int k = 0; k < 3; ++k)
     {
-        const pls_shape_input input = {.values = names[k].values};
+        const pls_shape_input input = {.values = names[k].values, .value_count = names[k].count};
         pls_shape *a = NULL, *b = NULL;
         assert_int_equal(pls_shape_make(names[k].flat, 2, &input, "x", &a), PLS_OK);
         assert_int_equal(pls_shape_make(names[k].solid, 2, &input, "x", &b), PLS_OK);
@@ -467,11 +471,31 @@ static void refuses_too_much_rounding(void **state)
     for (int k = 0; k < 2; ++k)
     {
         pls_shape *shape = NULL;
-        pls_shape_input input = {.values = wrong[k].values};
+        pls_shape_input input = {VALUES(wrong[k].values)};
         assert_int_equal(pls_shape_make(wrong[k].ops, 3, &input, "x", &shape), PLS_INVALID_ARGUMENT);
         assert_null(shape);
         assert_non_null(strstr(pls_last_message(), "rounding"));
     }
+}
+
+/// The array is as long as it says and no longer: the sanitizer sees a read beyond its end.
+static void refuses_too_few_values(void **state)
+{
+    (void)state;
+    const double half[3] = {0.5, 0.4, 0.3};
+    pls_shape *shape = NULL;
+    assert_int_equal(pls_shape_make(&pls_superquadric_shape, 3, &(pls_shape_input){VALUES(half)}, "shape 'stone'", &shape),
+                     PLS_INVALID_ARGUMENT);
+    assert_null(shape);
+    assert_string_equal(pls_last_message(), "shape 'stone': a superquadric takes 6 values, in this order: half (3), epsilon1, epsilon2, "
+                                            "rounding; `value_count` says that there are 3");
+    assert_int_equal(pls_shape_make(&pls_box_shape, 3, &(pls_shape_input){.values = half}, "a box", &shape), PLS_INVALID_ARGUMENT);
+    assert_string_equal(pls_last_message(),
+                        "a box: a box takes 4 values, in this order: half (3), rounding; `value_count` says that there are 0");
+    // None at all: the defaults, of which a required one is missing.
+    assert_int_equal(pls_shape_make(&pls_box_shape, 3, &(pls_shape_input){0}, "a box", &shape), PLS_INVALID_ARGUMENT);
+    assert_non_null(strstr(pls_last_message(), "'half[0]'"));
+    assert_int_equal(pls_memory_in_use(), 0);
 }
 
 int main(void)
@@ -489,6 +513,7 @@ int main(void)
         cmocka_unit_test(rounded_ellipsoids_have_steiners_volume),
         cmocka_unit_test(shapes_have_their_names_in_2d),
         cmocka_unit_test(refuses_too_much_rounding),
+        cmocka_unit_test(refuses_too_few_values),
     };
     return cmocka_run_group_tests_name("shapes", tests, NULL, NULL);
 }

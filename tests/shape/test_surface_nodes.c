@@ -3,6 +3,7 @@
 #include "shape/builtin.h"
 
 #include "base/random.h"
+#include "support/numbers.h"
 
 #include <particls/memory.h>
 
@@ -33,10 +34,10 @@ static const pls_parameter none[] = {{.name = NULL}};
 static const pls_shape_ops torus = {
     .api_version = PLS_API_VERSION, .name = "torus", .parameters = none, .in_3d = true, .sdf = torus_sdf, .mass_properties = torus_mass};
 
-static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values)
+static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values, size_t count)
 {
     pls_shape *shape = NULL;
-    const pls_shape_input input = {.values = values};
+    const pls_shape_input input = {.values = values, .value_count = count};
     if (pls_shape_make(ops, dimension, &input, "x", &shape) != PLS_OK) fail_msg("%s", pls_last_message());
     return shape;
 }
@@ -100,13 +101,13 @@ static void nodes_are_spread_evenly(void **state)
 {
     (void)state;
     const double ball[1] = {1.0}, square[4] = {1.0, 1.0, 1.0, 0.0};
-    pls_shape *shape = make(&pls_sphere_shape, 3, ball);
+    pls_shape *shape = make(&pls_sphere_shape, 3, COUNTED(ball));
     check(shape, 4.0 * M_PI, on_sphere);
     pls_shape_free(shape);
-    shape = make(&torus, 3, NULL);
+    shape = make(&torus, 3, NULL, 0);
     check(shape, 4.0 * M_PI * M_PI * 0.25, on_torus);
     pls_shape_free(shape);
-    shape = make(&pls_box_shape, 2, square);
+    shape = make(&pls_box_shape, 2, COUNTED(square));
     check(shape, 8.0, on_square);
     pls_shape_free(shape);
 }
@@ -116,7 +117,7 @@ static void what_has_no_end_has_no_nodes(void **state)
     (void)state;
     const double values[1] = {0.0};
     pls_vec3 node[1];
-    pls_shape *plane = make(&pls_plane_shape, 3, values);
+    pls_shape *plane = make(&pls_plane_shape, 3, COUNTED(values));
     assert_int_equal(pls_shape_surface_nodes(plane, 1, node), PLS_INVALID_ARGUMENT);
     pls_shape_free(plane);
     assert_int_equal(pls_memory_in_use(), 0);

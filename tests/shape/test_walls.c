@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "base/random.h"
 #include "base/text.h"
+#include "support/numbers.h"
 
 #include <particls/memory.h>
 
@@ -131,7 +132,7 @@ static void a_mesh_is_the_nearest_of_its_triangles(void **state)
     for (int rounded = 0; rounded < 2; ++rounded)
     {
         const double values[2] = {rounded ? 0.05 : 0.0, 2.0};
-        const pls_shape_input input = {.values = values, .path = "hills.obj"};
+        const pls_shape_input input = {VALUES(values), .path = "hills.obj"};
         pls_shape *s = NULL;
         if (make(&pls_mesh_shape, 3, &input, &s) != PLS_OK) fail_msg("%s", pls_last_message());
         check_wall(s);
@@ -162,7 +163,7 @@ static void triangles_near_a_point_are_few_and_all(void **state)
     static triangles t;
     write_hills("hills.obj", &t);
     const double values[2] = {0.0, 1.0};
-    const pls_shape_input input = {.values = values, .path = "hills.obj"};
+    const pls_shape_input input = {VALUES(values), .path = "hills.obj"};
     pls_shape *s = NULL;
     assert_int_equal(make(&pls_mesh_shape, 3, &input, &s), PLS_OK);
     pls_random random = pls_random_stream(3, 0, PLS_FOR_USER);
@@ -192,7 +193,7 @@ static void triangles_without_area_are_left_out(void **state)
     static const char flat[] = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n",
                       both[] = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n";
     const double values[2] = {0.0, 1.0};
-    pls_shape_input input = {.values = values, .path = "flat.obj"};
+    pls_shape_input input = {VALUES(values), .path = "flat.obj"};
     pls_shape *s = NULL;
     assert_int_equal(pls_write_file("flat.obj", flat, strlen(flat)), PLS_OK);
     assert_int_equal(make(&pls_mesh_shape, 3, &input, &s), PLS_INVALID_ARGUMENT);
@@ -222,7 +223,7 @@ static void a_polyline_is_the_nearest_of_its_segments(void **state)
     for (int closed = 0; closed < 2; ++closed)
     {
         const double values[2] = {closed ? 0.02 : 0.0, closed};
-        const pls_shape_input input = {.values = values, .points = points, .point_count = POINTS};
+        const pls_shape_input input = {VALUES(values), .points = points, .point_count = POINTS};
         pls_shape *s = NULL;
         if (make(&pls_polyline_shape, 2, &input, &s) != PLS_OK) fail_msg("%s", pls_last_message());
         const int segments = closed ? POINTS : POINTS - 1;
@@ -251,10 +252,10 @@ static void polylines_without_a_line_are_refused(void **state)
         pls_shape_input input;
         const char *message;
     } wrong[] = {
-        {{.values = open, .points = points, .point_count = 1}, "an open polyline needs at least 2 points, not 1"},
-        {{.values = closed, .points = points, .point_count = 2}, "a closed polyline needs at least 3 points, not 2"},
-        {{.values = half, .points = points, .point_count = 2}, "'closed' of a polyline must be 0 or 1, not 0.5"},
-        {{.values = open, .points = points, .point_count = 3}, "points 2 and 3 of a polyline are the same, (1, 0) m; remove one of them"},
+        {{VALUES(open), .points = points, .point_count = 1}, "an open polyline needs at least 2 points, not 1"},
+        {{VALUES(closed), .points = points, .point_count = 2}, "a closed polyline needs at least 3 points, not 2"},
+        {{VALUES(half), .points = points, .point_count = 2}, "'closed' of a polyline must be 0 or 1, not 0.5"},
+        {{VALUES(open), .points = points, .point_count = 3}, "points 2 and 3 of a polyline are the same, (1, 0) m; remove one of them"},
     };
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k)
     {
@@ -277,7 +278,7 @@ static const char dented[] =
 static pls_status make_grain(const char *content, double hull, pls_shape **shape)
 {
     const double values[2] = {0.0, hull};
-    const pls_shape_input input = {.values = values, .path = "grain.obj"};
+    const pls_shape_input input = {VALUES(values), .path = "grain.obj"};
     assert_int_equal(pls_write_file("grain.obj", content, strlen(content)), PLS_OK);
     return make(&pls_polyhedron_shape, 3, &input, shape);
 }
@@ -310,11 +311,11 @@ static void only_convex_meshes_are_grains(void **state)
 
     // The same files are walls as they are.
     const double values[2] = {0.0, 1.0};
-    const pls_shape_input input = {.values = values, .path = "grain.obj"};
+    const pls_shape_input input = {VALUES(values), .path = "grain.obj"};
     assert_int_equal(make(&pls_mesh_shape, 3, &input, &s), PLS_OK);
     assert_int_equal(s->part_count, 10);
     pls_shape_free(s);
-    const pls_shape_input nothing = {.values = values};
+    const pls_shape_input nothing = {VALUES(values)};
     assert_int_equal(make(&pls_polyhedron_shape, 3, &nothing, &s), PLS_INVALID_ARGUMENT);
     assert_string_equal(pls_last_message(), "a polyhedron needs 'points', or the 'path' of a mesh file (.obj, .stl, .ply)");
     assert_int_equal(pls_memory_in_use(), 0);

@@ -3,6 +3,8 @@
 #include <particls/memory.h>
 #include <particls/world.h>
 
+#include "support/numbers.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -81,7 +83,7 @@ static pls_world *balls(pls_group_id *third)
     assert_int_equal(pls_world_create(&def, &world), PLS_OK);
     const double radius[1] = {0.1};
     pls_shape_id ball;
-    assert_int_equal(pls_world_add_shape(world, "ball", pls_builtin_shapes()[0], radius, &ball), PLS_OK);
+    assert_int_equal(pls_world_add_shape(world, "ball", pls_builtin_shapes()[0], COUNTED(radius), &ball), PLS_OK);
     pls_material_def material = pls_default_material_def();
     strcpy(material.name, "grain");
     material.values.density = 1.0;

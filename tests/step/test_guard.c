@@ -2,6 +2,8 @@
 
 #include <particls/particls.h>
 
+#include "support/numbers.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -32,7 +34,7 @@ static pls_world *row_of_spheres(int count, double dt, pls_material_id *grain)
     assert_int_equal(pls_world_create(&def, &world), PLS_OK);
     const double radius[1] = {1.0}, law[3] = {1.0, 1.0, 0.5};
     pls_shape_id ball;
-    assert_int_equal(pls_world_add_shape(world, "ball", pls_builtin_shapes()[0], radius, &ball), PLS_OK);
+    assert_int_equal(pls_world_add_shape(world, "ball", pls_builtin_shapes()[0], COUNTED(radius), &ball), PLS_OK);
     pls_material_def material = pls_default_material_def();
     strcpy(material.name, "grain");
     material.values.density = 1.0;
@@ -124,8 +126,8 @@ static void what_no_force_can_move_passes_through_its_like(void **state)
         material.values.density = 1.0;
         assert_int_equal(pls_world_add_material(world, &material, &steel), PLS_OK);
         pls_shape_id box, wall;
-        assert_int_equal(pls_world_add_shape(world, "box", builtin_shape("box"), half_and_rounding, &box), PLS_OK);
-        assert_int_equal(pls_world_add_shape(world, "wall", builtin_shape("plane"), lets_go, &wall), PLS_OK);
+        assert_int_equal(pls_world_add_shape(world, "box", builtin_shape("box"), COUNTED(half_and_rounding), &box), PLS_OK);
+        assert_int_equal(pls_world_add_shape(world, "wall", builtin_shape("plane"), COUNTED(lets_go), &wall), PLS_OK);
         pls_body_def gate = pls_default_body_def(), still = pls_default_body_def();
         pls_body_id id;
         gate.shape = box;

@@ -1,6 +1,7 @@
 #include "support/grains.h"
 
 #include "base/random.h"
+#include "support/numbers.h"
 
 const char *grain_name(enum grain_kind kind)
 {
@@ -26,12 +27,12 @@ pls_shape_id grain_shape(const verify_scene *scene, enum grain_kind kind)
 {
     switch (kind)
     {
-        case GRAIN_BALL: return verify_add_shape(scene, "sphere", (const double[]){0.35});
-        case GRAIN_ELLIPSOID: return verify_add_shape(scene, "ellipsoid", (const double[]){0.45, 0.35, 0.28, 0.0});
-        case GRAIN_SUPERQUADRIC: return verify_add_shape(scene, "superquadric", (const double[]){0.36, 0.3, 0.33, 0.7, 0.8, 0.0});
-        case GRAIN_CAPSULE: return verify_add_shape(scene, "capsule", (const double[]){0.22, 0.45});
-        case GRAIN_SOAP: return verify_add_shape(scene, "box", (const double[]){0.3, 0.24, 0.2, 0.08});
-        case GRAIN_BOX: return verify_add_shape(scene, "box", (const double[]){0.33, 0.26, 0.22, 0.0});
+        case GRAIN_BALL: return verify_add_shape(scene, "sphere", NUMBERS(0.35));
+        case GRAIN_ELLIPSOID: return verify_add_shape(scene, "ellipsoid", NUMBERS(0.45, 0.35, 0.28, 0.0));
+        case GRAIN_SUPERQUADRIC: return verify_add_shape(scene, "superquadric", NUMBERS(0.36, 0.3, 0.33, 0.7, 0.8, 0.0));
+        case GRAIN_CAPSULE: return verify_add_shape(scene, "capsule", NUMBERS(0.22, 0.45));
+        case GRAIN_SOAP: return verify_add_shape(scene, "box", NUMBERS(0.3, 0.24, 0.2, 0.08));
+        case GRAIN_BOX: return verify_add_shape(scene, "box", NUMBERS(0.33, 0.26, 0.22, 0.0));
         case GRAIN_STONE: return stone(scene);
         default: return verify_add_dumbbell(scene, 0.22, 0.46);
     }

@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,7 +102,7 @@ const pls_shape *narrow_shape(int dimension, int number)
         pls_vec3 n = random_unit(&random, dimension);
         points[k] = pls_vec(0.7 * n.x, 0.55 * n.y, dimension == 2 ? 0.0 : 0.5 * n.z);
     }
-    const pls_shape_input input = {.values = row->values, .points = points, .point_count = (size_t)row->points};
+    const pls_shape_input input = {VALUES(row->values), .points = points, .point_count = (size_t)row->points};
     if (pls_shape_make(row->ops, dimension, &input, row->name, shape) != PLS_OK)
     {
         fprintf(stderr, "%s\n", pls_last_message());

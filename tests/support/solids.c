@@ -3,6 +3,7 @@
 #include "support/solids.h"
 
 #include "shape/builtin.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -56,20 +57,20 @@ pls_shape *solids_make(const pls_shape_ops *ops, int dimension, const pls_shape_
 pls_shape *solids_box(int dimension, double x, double y, double z, double rounding)
 {
     const double values[] = {x, y, z, rounding};
-    return solids_make(&pls_box_shape, dimension, &(pls_shape_input){.values = values});
+    return solids_make(&pls_box_shape, dimension, &(pls_shape_input){VALUES(values)});
 }
 
 pls_shape *solids_plane(int dimension)
 {
     const double values[] = {0.0};
-    return solids_make(&pls_plane_shape, dimension, &(pls_shape_input){.values = values});
+    return solids_make(&pls_plane_shape, dimension, &(pls_shape_input){VALUES(values)});
 }
 
 pls_shape *solids_hull(int dimension, const pls_vec3 *points, size_t count, double rounding)
 {
     const double values[] = {[0] = rounding, [1] = rounding, [2] = rounding};
     return solids_make(dimension == 3 ? &pls_polyhedron_shape : &pls_polygon_shape, dimension,
-                       &(pls_shape_input){.values = values, .points = points, .point_count = count});
+                       &(pls_shape_input){VALUES(values), .points = points, .point_count = count});
 }
 
 /// Random points of an ellipsoid about the origin.

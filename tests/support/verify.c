@@ -1,4 +1,5 @@
 #include "support/verify.h"
+#include "support/numbers.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -54,7 +55,7 @@ static pls_shape_id add_shape(pls_world *world, const char *shape, const verify_
     double values[PLS_MAX_PARAMETERS] = {0};
     pls_shape_id id;
     fill_values(ops->parameters, given, values);
-    MUST(pls_world_add_shape(world, shape, ops, values, &id));
+    MUST(pls_world_add_shape(world, shape, ops, COUNTED(values), &id));
     return id;
 }
 
@@ -65,12 +66,12 @@ static void free_name(const verify_scene *scene, const char *shape, char name[PL
     for (int k = 2; pls_world_find_shape(scene->world, name).index1; ++k) snprintf(name, PLS_NAME_SIZE, "%s %d", shape, k);
 }
 
-pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values)
+pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values, size_t count)
 {
     pls_shape_id id;
     char name[PLS_NAME_SIZE];
     free_name(scene, shape, name);
-    MUST(pls_world_add_shape(scene->world, name, verify_shape(shape), values, &id));
+    MUST(pls_world_add_shape(scene->world, name, verify_shape(shape), values, count, &id));
     return id;
 }
 
@@ -90,13 +91,13 @@ pls_shape_id verify_add_hull(const verify_scene *scene, const pls_vec3 *points, 
 {
     const double sharp[PLS_MAX_PARAMETERS] = {0};
     return use_shape(scene, scene->dimension == 3 ? "polyhedron" : "polygon",
-                     &(pls_shape_input){.values = sharp, .points = points, .point_count = count});
+                     &(pls_shape_input){VALUES(sharp), .points = points, .point_count = count});
 }
 
 pls_shape_id verify_add_dumbbell(const verify_scene *scene, double radius, double distance)
 {
     pls_shape *ball;
-    MUST(pls_shape_make(verify_shape("sphere"), scene->dimension, &(pls_shape_input){.values = &radius}, "ball", &ball));
+    MUST(pls_shape_make(verify_shape("sphere"), scene->dimension, &(pls_shape_input){.values = &radius, .value_count = 1}, "ball", &ball));
     pls_shape_part parts[2];
     for (int k = 0; k < 2; ++k)
         parts[k] = (pls_shape_part){.shape = ball,
@@ -104,7 +105,7 @@ pls_shape_id verify_add_dumbbell(const verify_scene *scene, double radius, doubl
                                     .orientation = pls_quat_identity(),
                                     .scale = 1.0};
     const double none[PLS_MAX_PARAMETERS] = {0};
-    pls_shape_id id = use_shape(scene, "compound", &(pls_shape_input){.values = none, .parts = parts, .part_count = 2});
+    pls_shape_id id = use_shape(scene, "compound", &(pls_shape_input){VALUES(none), .parts = parts, .part_count = 2});
     pls_shape_free(ball);
     return id;
 }

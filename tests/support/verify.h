@@ -34,7 +34,7 @@ void verify_close(verify_scene *scene);
 void verify_set_law(pls_world *world, pls_material_id a, pls_material_id b, const char *law, const verify_value *values);
 
 /// A built-in shape with all of its numbers, in the order of its table.
-pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values);
+pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values, size_t count);
 /// The convex hull of points.
 pls_shape_id verify_add_hull(const verify_scene *scene, const pls_vec3 *points, size_t count);
 /// A compound of two spheres (2D: discs) on the x axis.

@@ -4,6 +4,7 @@
 //     w1 = a cn(rate t, k)    w2 = b sn(rate t, k)    w3 = c dn(rate t, k)      in the body's frame
 // The orientation has no equally short formula; its reference is a Runge-Kutta solution of fourth order with steps far below those under test.
 #include "verify/cases.h"
+#include "support/numbers.h"
 
 static const pls_vec3 moments = {1.0, 2.0, 3.0};
 static const double pi = 3.14159265358979323846;
@@ -240,8 +241,7 @@ void case_box_top(verify_sheet *sheet)
     def.dt = dt;
     def.allow_unstable = true; // there is no contact
     verify_scene scene = verify_open(&def, "elastic", (const verify_value[]){{"kn", 1.0}, {"ks", 1.0}, {"friction", 0.0}, {NULL, 0.0}});
-    pls_body_def top =
-        verify_body_def(&scene, verify_add_shape(&scene, "box", (const double[]){half.x, half.y, half.z, 0.0}), pls_vec(0, 0, 0));
+    pls_body_def top = verify_body_def(&scene, verify_add_shape(&scene, "box", NUMBERS(half.x, half.y, half.z, 0.0)), pls_vec(0, 0, 0));
     top.orientation = pls_quat_unit(start_orientation);
     top.angular_velocity = pls_rotate(top.orientation, spin);
     pls_body_id id = verify_add(&scene, &top);

@@ -1,5 +1,6 @@
 // cases_solid_motion.c -- bodies that roll, settle and tumble: cylinder, capsule, a compound, ellipsoid, and a box about its middle axis.
 #include "verify/cases.h"
+#include "support/numbers.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -25,8 +26,8 @@ typedef struct roller
 
 static pls_shape_id add_roller(const verify_scene *scene, int which)
 {
-    if (which == 0) return verify_add_shape(scene, "cylinder", (const double[]){radius, length, 0.0});
-    if (which == 1) return verify_add_shape(scene, "capsule", (const double[]){radius, length});
+    if (which == 0) return verify_add_shape(scene, "cylinder", NUMBERS(radius, length, 0.0));
+    if (which == 1) return verify_add_shape(scene, "capsule", NUMBERS(radius, length));
     return verify_add_dumbbell(scene, radius, 3.0 * radius);
 }
 
@@ -97,8 +98,8 @@ void case_ellipsoid_settles(verify_sheet *sheet)
                         (const verify_value[]){{"kn", kn}, {"ks", 0.0}, {"cn", 100.0}, {"cs", 10.0}, {"friction", 10.0}, {NULL, 0.0}});
         verify_wall(&scene, pls_vec(0, 0, 0), up);
         MUST(pls_world_add_gravity(scene.world, pls_scale(up, -g)));
-        pls_body_def body = verify_body_def(&scene, verify_add_shape(&scene, "ellipsoid", (const double[]){half.x, half.y, half.z, 0.0}),
-                                            pls_scale(up, 0.7));
+        pls_body_def body =
+            verify_body_def(&scene, verify_add_shape(&scene, "ellipsoid", NUMBERS(half.x, half.y, half.z, 0.0)), pls_scale(up, 0.7));
         body.orientation = pls_quat_unit(dimension == 3 ? (pls_quat){1.0, 0.2, 0.25, 0.1} : (pls_quat){1.0, 0.0, 0.0, 0.3});
         pls_body_id id = verify_add(&scene, &body);
         verify_add_field(scene.world, &drag);

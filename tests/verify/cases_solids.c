@@ -2,6 +2,7 @@
 //
 // Gravity is tilted, not the plane. Of a flat box the laws of faces know kn delta = load on an area A for manifold and kn A delta/A0 = load for volume; A0 = A here.
 #include "verify/cases.h"
+#include "support/numbers.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -36,7 +37,7 @@ static ground open_ground(int dimension, pls_faces faces, double dt, const verif
     g.height = dimension == 3 ? half.z : half.y;
     g.area = 2.0 * half.x * (dimension == 3 ? 2.0 * half.y : 1.0);
     g.mass = g.area * 2.0 * g.height;
-    g.box = verify_add_shape(&g.scene, "box", (const double[]){half.x, half.y, half.z, 0.0});
+    g.box = verify_add_shape(&g.scene, "box", NUMBERS(half.x, half.y, half.z, 0.0));
     verify_set_faces(&g.scene, faces, faces == PLS_FACES_VOLUME ? g.area : 0.0);
     verify_wall(&g.scene, pls_vec(0, 0, 0), g.up);
     return g;
@@ -254,8 +255,8 @@ void case_spinning_on_face(verify_sheet *sheet)
             verify_scene scene = verify_open(&def, "viscoelastic", damped);
             const double area = square ? 4.0 * radius * radius : 0.5 * SIDES * radius * radius * sin(2.0 * pi / SIDES), mass = 0.2 * area;
             verify_set_faces(&scene, laws[law], law == 1 ? area : 0.0);
-            pls_shape_id shape = square ? verify_add_shape(&scene, "box", (const double[]){radius, radius, 0.1, 0.0})
-                                        : verify_add_hull(&scene, points, 2 * SIDES);
+            pls_shape_id shape =
+                square ? verify_add_shape(&scene, "box", NUMBERS(radius, radius, 0.1, 0.0)) : verify_add_hull(&scene, points, 2 * SIDES);
             verify_wall(&scene, pls_vec(0, 0, 0), pls_vec(0, 0, 1));
             MUST(pls_world_add_gravity(scene.world, pls_vec(0, 0, -gravity)));
             pls_body_def body = verify_body_def(&scene, shape, pls_vec(0, 0, 0.1 - mass * gravity / kn));
