@@ -31,13 +31,13 @@ static pls_posed at(const pls_shape *shape, pls_vec3 x, pls_quat q) { return pls
 static pls_shape *capsule(int dimension, double radius, double length)
 {
     const double values[] = {radius, length};
-    return solids_make(&pls_capsule_shape, dimension, &(pls_shape_input){.values = values});
+    return solids_make(&pls_capsule_shape, dimension, &(pls_shape_input){.values = values, .value_count = sizeof values / sizeof *values});
 }
 
 static pls_shape *cylinder(double radius, double length, double rounding)
 {
     const double values[] = {radius, length, rounding};
-    return solids_make(&pls_cylinder_shape, 3, &(pls_shape_input){.values = values});
+    return solids_make(&pls_cylinder_shape, 3, &(pls_shape_input){.values = values, .value_count = sizeof values / sizeof *values});
 }
 
 static pls_posed ground_of(const pls_shape *plane) { return at(plane, pls_vec(0, 0, 0), pls_quat_identity()); }
@@ -367,8 +367,8 @@ static void other_pairs_are_left_alone(void **state)
     (void)state;
     const double radius[] = {0.3}, axes[] = {0.3, 0.4, 0.5, 0.0};
     pls_shape *c = capsule(3, 0.2, 0.7), *soap = solids_box(3, 0.4, 0.3, 0.2, 0.05);
-    pls_shape *ball = solids_make(&pls_sphere_shape, 3, &(pls_shape_input){.values = radius});
-    pls_shape *egg = solids_make(&pls_ellipsoid_shape, 3, &(pls_shape_input){.values = axes});
+    pls_shape *ball = solids_make(&pls_sphere_shape, 3, &(pls_shape_input){.values = radius, .value_count = 1});
+    pls_shape *egg = solids_make(&pls_ellipsoid_shape, 3, &(pls_shape_input){.values = axes, .value_count = 4});
     const pls_shape *pair[][2] = {{ball, c}, {soap, ball}, {egg, c}, {soap, egg}};
     for (size_t k = 0; k < sizeof pair / sizeof *pair; ++k)
     {

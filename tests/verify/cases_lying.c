@@ -1,6 +1,7 @@
 // cases_lying.c -- capsules and cylinders that lie along a line: rest, rocking from end to end, slopes, the energy book.
 //
 // With the deepest point alone the force jumps from one end to the other at every step: nothing comes to rest, and the energy book drifts without end.
+#include "support/numbers.h"
 #include "verify/cases.h"
 
 static const double pi = 3.14159265358979323846;
@@ -25,15 +26,15 @@ static verify_scene lay(enum lying kind, double gap, double tilt, double spin, d
     const bool on_box = kind == CAPSULE_ON_BOX || kind == SOAP_ON_BOX, upright = kind == CYLINDER || kind == ROUNDED_CYLINDER;
     pls_shape_id shape;
     if (kind == CAPSULE || kind == CAPSULE_ON_BOX)
-        shape = verify_add_shape(&scene, "capsule", (const double[]){radius, length});
+        shape = verify_add_shape(&scene, "capsule", NUMBERS(radius, length));
     else if (upright)
-        shape = verify_add_shape(&scene, "cylinder", (const double[]){radius, length, kind == CYLINDER ? 0.0 : 0.05});
+        shape = verify_add_shape(&scene, "cylinder", NUMBERS(radius, length, kind == CYLINDER ? 0.0 : 0.05));
     else
-        shape = verify_add_shape(&scene, "box", (const double[]){0.5 * length, radius, radius, 0.05});
+        shape = verify_add_shape(&scene, "box", NUMBERS(0.5 * length, radius, radius, 0.05));
     if (on_box)
     {
         pls_body_def box =
-            verify_body_def(&scene, verify_add_shape(&scene, "box", (const double[]){15.0, 1.0, 0.5, 0.0}), pls_vec(0, 0, -0.5));
+            verify_body_def(&scene, verify_add_shape(&scene, "box", NUMBERS(15.0, 1.0, 0.5, 0.0)), pls_vec(0, 0, -0.5));
         box.motion.axes = PLS_AXIS_ALL;
         verify_add(&scene, &box);
     }
