@@ -123,20 +123,6 @@ static const pls_shape_part *parts(const pls_shape *shape, size_t *count)
 
 // ---- geometry -------------------------------------------------------------------------------------------------------------------------------------------------
 
-static double sdf(const pls_shape *shape, pls_vec3 X)
-{
-    double distance;
-    pls_part_tree_nearest(shape->tree, X, &distance);
-    return distance;
-}
-
-static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
-{
-    double distance;
-    const pls_shape_part *part = pls_part_tree_nearest(shape->tree, X, &distance);
-    return pls_rotate(part->orientation, pls_shape_gradient(part->shape, pls_part_from_whole(part, X)));
-}
-
 static bool is_convex(const pls_shape *shape)
 {
     const compound *c = shape->data;
@@ -248,8 +234,8 @@ const pls_shape_ops pls_compound_shape = {
     .in_3d = true,
     .prepare = prepare,
     .release = release,
-    .sdf = sdf,
-    .gradient = gradient,
+    .sdf = pls_union_sdf,
+    .gradient = pls_union_gradient,
     .is_convex = is_convex,
     .support = support,
     .mass_properties = mass_properties,

@@ -298,25 +298,12 @@ static const pls_shape_part *parts(const pls_shape *shape, size_t *count)
     return w->part;
 }
 
-static double sdf(const pls_shape *shape, pls_vec3 X)
-{
-    double distance;
-    pls_part_tree_nearest(shape->tree, X, &distance);
-    return distance;
-}
-
-static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
-{
-    double distance;
-    const pls_shape_part *part = pls_part_tree_nearest(shape->tree, X, &distance);
-    return piece_gradient(part->shape, pls_part_from_whole(part, X));
-}
-
 /// The boxes of the pieces are the smallest.
 static void bounds(const pls_shape *shape, pls_vec3 *lower, pls_vec3 *upper) { pls_part_tree_box(shape->tree, lower, upper); }
 
-#define ANSWERS \
-    .api_version = PLS_API_VERSION, .wall = true, .release = release, .sdf = sdf, .gradient = gradient, .bounds = bounds, .parts = parts
+#define ANSWERS                                                                                                             \
+    .api_version = PLS_API_VERSION, .wall = true, .release = release, .sdf = pls_union_sdf, .gradient = pls_union_gradient, \
+    .bounds = bounds, .parts = parts
 
 const pls_shape_ops pls_mesh_shape = {
     .name = "mesh",

@@ -262,3 +262,19 @@ const pls_shape_part *pls_part_tree_nearest(const pls_part_tree *tree, pls_vec3 
     *distance = s.distance;
     return &tree->part[s.part];
 }
+
+// ---- the union ------------------------------------------------------------------------------------------------------------------------------------------------
+
+double pls_union_sdf(const pls_shape *shape, pls_vec3 X)
+{
+    double distance;
+    pls_part_tree_nearest(shape->tree, X, &distance);
+    return distance;
+}
+
+pls_vec3 pls_union_gradient(const pls_shape *shape, pls_vec3 X)
+{
+    double distance;
+    const pls_shape_part *part = pls_part_tree_nearest(shape->tree, X, &distance);
+    return pls_rotate(part->orientation, pls_shape_gradient(part->shape, pls_part_from_whole(part, X)));
+}

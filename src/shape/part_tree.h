@@ -13,6 +13,9 @@ void pls_part_tree_free(pls_part_tree *tree);
 size_t pls_part_tree_near(const pls_part_tree *tree, pls_vec3 X, double radius, uint32_t *part, size_t capacity);
 /// The part whose signed distance at X, told in `*distance`, is the least of all.
 const pls_shape_part *pls_part_tree_nearest(const pls_part_tree *tree, pls_vec3 X, double *distance);
+/// Signed distance of a shape that is the union of its parts, and its gradient.
+double pls_union_sdf(const pls_shape *shape, pls_vec3 X);
+pls_vec3 pls_union_gradient(const pls_shape *shape, pls_vec3 X);
 /// The box about all parts, not the smallest.
 void pls_part_tree_box(const pls_part_tree *tree, pls_vec3 *lower, pls_vec3 *upper);
 /// The box about one part, not the smallest if it is turned.

@@ -239,20 +239,40 @@ pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *out)
     return PLS_OK;
 }
 
-static pls_status refuse(const pls_world *world, const pls_step_estimate *e)
+/// Whether the step would be stable with the contacts there are, so that it is those still to come, as many as `coordination` says, that refuse it.
+static pls_status only_assumed(const pls_world *world, bool *only)
 {
-    char limit[160];
+    pls_step_estimate now;
+    estimate(world, 0, &now);
+    if (world->dt > now.dt) PLS_TRY(refine(world, 0, &now));
+    *only = world->dt <= now.dt;
+    return PLS_OK;
+}
+
+/// `coordination`: assumed by the estimate.
+static pls_status refuse(const pls_world *world, int coordination, const pls_step_estimate *e)
+{
+    char limit[160], assumed[200] = "";
+    bool only = false;
+    if (coordination > 0) PLS_TRY(only_assumed(world, &only));
+    if (only)
+        snprintf(assumed, sizeof assumed,
+                 " Contacts still to come set it, %d per body: with those there are now the step would do. Where bodies will never have so "
+                 "many, "
+                 "say how many by time.coordination.",
+                 coordination);
     if (e->damping_limits)
         snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping,
                  sqrt(e->stiffness));
     else
         snprintf(limit, sizeof limit, "its springs limit it: natural frequency %.4g 1/s, damping rate %.4g 1/s", sqrt(e->stiffness),
                  e->damping);
-    return pls_fail(PLS_UNSTABLE_STEP,
-                    "the time step %g s is larger than the stable step %.4g s at t = %g s. Body %u with %d contacts sets it; %s. Take dt: "
-                    "auto or a smaller dt "
-                    "(or time.allow_unstable: true)",
-                    world->dt, e->dt, world->time, e->body, e->contacts, limit);
+    return pls_fail(
+        PLS_UNSTABLE_STEP,
+        "the time step %g s is larger than the stable step %.4g s at t = %g s. Body %u with %d contacts sets it; %s.%s Take dt: "
+        "auto or a smaller dt "
+        "(or time.allow_unstable: true)",
+        world->dt, e->dt, world->time, e->body, e->contacts, limit, assumed);
 }
 
 pls_status pls_choose_step(pls_world *world)
@@ -265,7 +285,7 @@ pls_status pls_choose_step(pls_world *world)
     if (world->dt > e.dt && !world->def.allow_unstable)
     {
         status = refine(world, world->def.coordination, &e);
-        if (status == PLS_OK && world->dt > e.dt) status = refuse(world, &e);
+        if (status == PLS_OK && world->dt > e.dt) status = refuse(world, world->def.coordination, &e);
     }
     mark_none(world);
     PLS_TRY(status);
@@ -298,5 +318,5 @@ pls_status pls_check_stable_step(pls_world *world)
     estimate(world, 0, &e);
     if (world->dt <= e.dt) return PLS_OK;
     PLS_TRY(refine(world, 0, &e));
-    return world->dt <= e.dt ? PLS_OK : refuse(world, &e);
+    return world->dt <= e.dt ? PLS_OK : refuse(world, 0, &e);
 }

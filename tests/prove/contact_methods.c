@@ -164,17 +164,17 @@ static pls_quat random_turn(pls_random *random, int dimension)
     return pls_quat_unit(dimension == 2 ? (pls_quat){q[0], 0.0, 0.0, q[1]} : (pls_quat){q[0], q[1], q[2], q[3]});
 }
 
-static double size_of(const two_bodies_body *a, const two_bodies_body *b) { return fmin(a->shape->radius, b->shape->radius); }
+static double size_of(const moving_body *a, const moving_body *b) { return fmin(a->shape->radius, b->shape->radius); }
 
-static double depth_now(const two_bodies_body *a, const two_bodies_body *b)
+static double depth_now(const moving_body *a, const moving_body *b)
 {
-    pls_posed pa = two_bodies_pose(a), pb = two_bodies_pose(b);
+    pls_posed pa = moving_body_pose(a), pb = moving_body_pose(b);
     return depth_cold(&pa, &pb).delta;
 }
 
 /// A at the origin, turned at random, and B on a random line, off the centre by up to `aside` of the size, where the depth is `part` of the size. A plane is B.
-static void place(const pls_shape *sa, const pls_shape *sb, double aside, double part, pls_random *random, two_bodies_body *a,
-                  two_bodies_body *b, pls_vec3 *line)
+static void place(const pls_shape *sa, const pls_shape *sb, double aside, double part, pls_random *random, moving_body *a, moving_body *b,
+                  pls_vec3 *line)
 {
     const int dimension = sa->dimension;
     pls_vec3 e = random_direction(random, dimension), side = random_direction(random, dimension);
@@ -188,7 +188,7 @@ static void place(const pls_shape *sa, const pls_shape *sb, double aside, double
     for (int k = 0; k < 50; ++k)
     {
         double middle = 0.5 * (low + high);
-        b->position = pls_add(off, pls_scale(e, middle));
+        b->x = pls_add(off, pls_scale(e, middle));
         *(depth_now(a, b) > part * size ? &low : &high) = middle;
     }
     *line = e;
@@ -243,10 +243,10 @@ static void compare_depths(const pls_shape *sa, const pls_shape *sb, uint64_t st
     for (int k = 0; k < POSES; ++k)
     {
         const double part = pow(10.0, -3.0 + 1.7 * pls_random_uniform(&random)); // 0.1 to 5 % of the size
-        two_bodies_body a, b;
+        moving_body a, b;
         pls_vec3 line;
         place(sa, sb, 0.5, part, &random, &a, &b, &line);
-        pls_posed pa = two_bodies_pose(&a), pb = two_bodies_pose(&b);
+        pls_posed pa = moving_body_pose(&a), pb = moving_body_pose(&b);
         two_bodies_contact depth = depth_cold(&pa, &pb);
         double cold[PLS_ADMM_STATE] = {0.0};
         pls_overlap o;
@@ -273,7 +273,7 @@ static void count_iterations(const pls_shape *sa, const pls_shape *sb, uint64_t 
         int count = 0, few = 0;
         for (int p = 0; p < TRAJECTORIES; ++p)
         {
-            two_bodies_body a, b;
+            moving_body a, b;
             pls_vec3 line, along = random_direction(&random, sa->dimension);
             pls_vec3 w = sa->dimension == 2 ? pls_vec(0.0, 0.0, 1.0) : random_direction(&random, 3);
             place(sa, sb, 0.5, 0.02 * pls_random_uniform(&random), &random, &a, &b, &line);
@@ -283,12 +283,12 @@ static void count_iterations(const pls_shape *sa, const pls_shape *sb, uint64_t 
             for (int k = 0; k <= STEPS; ++k)
             {
                 pls_overlap o;
-                pls_posed pa = two_bodies_pose(&a), pb = two_bodies_pose(&b);
+                pls_posed pa = moving_body_pose(&a), pb = moving_body_pose(&b);
                 pls_admm_depth(&pa, &pb, tolerances[t], state, &o);
                 if (k == 0) cold[p] = o.iterations;
                 if (k > 0) warm[count++] = o.iterations, few += o.iterations <= 2;
-                a.position = pls_add(a.position, pls_scale(along, step_of_path * size_of(&a, &b)));
-                a.orientation = pls_quat_unit(pls_quat_multiply(turn, a.orientation));
+                a.x = pls_add(a.x, pls_scale(along, step_of_path * size_of(&a, &b)));
+                a.q = pls_quat_unit(pls_quat_multiply(turn, a.q));
             }
         }
         f->few[t] = (double)few / count;
@@ -305,20 +305,19 @@ static void count_iterations(const pls_shape *sa, const pls_shape *sb, uint64_t 
 static double collide(const pls_shape *sa, const pls_shape *sb, memory *m, double steps, pls_random *random)
 {
     two_bodies pair = {.find = find, .user = m};
-    two_bodies_body *a = &pair.body[0], *b = &pair.body[1];
+    moving_body *a = &pair.body[0], *b = &pair.body[1];
     pls_vec3 line;
     place(sa, sb, 0.25, -0.005, random, a, b, &line);
-    const double size = size_of(a, b), mass = isinf(b->mass) ? a->mass : a->mass * b->mass / (a->mass + b->mass);
+    const double size = size_of(a, b), mass = b->fixed ? a->mass : a->mass * b->mass / (a->mass + b->mass);
     pair.stiffness = mass / (hardest * hardest * size * size);
-    a->velocity = line;
+    a->v = line;
     for (int k = 0; k < 2; ++k)
     {
-        two_bodies_body *body = &pair.body[k];
-        if (isinf(body->mass)) continue;
+        moving_body *body = &pair.body[k];
+        if (body->fixed) continue;
         pls_vec3 w = sa->dimension == 2 ? pls_vec(0.0, 0.0, pls_random_uniform(random) - 0.5) : random_direction(random, 3);
         w = pls_scale(w, (sa->dimension == 2 ? 1.0 : 0.5 * pls_random_uniform(random)) / body->shape->radius);
-        pls_vec3 own = pls_rotate_back(body->orientation, w);
-        body->spin = pls_rotate(body->orientation, pls_vec(own.x * body->moments.x, own.y * body->moments.y, own.z * body->moments.z));
+        moving_body_set_spin(body, w);
     }
     two_bodies_begin(&pair);
     // A push aside of the centres moves less mass, so such contacts are shorter.

@@ -147,10 +147,32 @@ static void what_no_force_can_move_passes_through_its_like(void **state)
     }
 }
 
+/// Two spheres that touch: the contacts they may still get refuse a step that is stable with the one they have, and the message says so. A step that is too large for that one
+/// too is refused without a word about others.
+static void a_refused_step_tells_of_contacts_still_to_come(void **state)
+{
+    (void)state;
+    pls_material_id grain;
+    pls_step_estimate estimate;
+    pls_world *world = row_of_spheres(2, 1e-3, &grain);
+    assert_int_equal(pls_world_stable_step(world, &estimate), PLS_OK);
+    pls_world_destroy(world);
+    world = row_of_spheres(2, 2.0 * estimate.dt, &grain);
+    assert_int_equal(pls_world_prepare(world), PLS_UNSTABLE_STEP);
+    assert_non_null(strstr(pls_last_message(), "Contacts still to come set it, 12 per body"));
+    assert_non_null(strstr(pls_last_message(), "time.coordination"));
+    pls_world_destroy(world);
+    world = row_of_spheres(2, 10.0 * estimate.dt, &grain);
+    assert_int_equal(pls_world_prepare(world), PLS_UNSTABLE_STEP);
+    assert_null(strstr(pls_last_message(), "coordination"));
+    pls_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_step_that_makes_a_velocity_not_a_number_is_refused),
                                        cmocka_unit_test(a_law_that_stiffens_is_noticed_within_64_steps),
-                                       cmocka_unit_test(what_no_force_can_move_passes_through_its_like)};
+                                       cmocka_unit_test(what_no_force_can_move_passes_through_its_like),
+                                       cmocka_unit_test(a_refused_step_tells_of_contacts_still_to_come)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

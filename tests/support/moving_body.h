@@ -1,6 +1,6 @@
 // moving_body -- a few rigid bodies moved by velocity Verlet, apart from the library's step: to measure what contact forces do to energy.
-#ifndef PLS_TEST_TWO_BODIES_H
-#define PLS_TEST_TWO_BODIES_H
+#ifndef PLS_TEST_MOVING_BODY_H
+#define PLS_TEST_MOVING_BODY_H
 
 #include "contact/posed.h"
 

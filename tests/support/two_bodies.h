@@ -1,20 +1,10 @@
 // two_bodies.h -- two rigid bodies that collide without friction or damping: what a way of finding contacts does to energy.
 //
-// Velocity Verlet on its own, apart from the library's step: any change of energy beyond its second-order error is the contact's.
+// Velocity Verlet apart from the library's step (moving_body): any change of energy beyond its second-order error is the contact's.
 #ifndef PLS_TESTS_SUPPORT_TWO_BODIES_H
 #define PLS_TESTS_SUPPORT_TWO_BODIES_H
 
-#include "contact/posed.h"
-
-/// A body of density 1; of an unbounded shape: one that does not move.
-typedef struct two_bodies_body
-{
-    const pls_shape *shape;
-    double mass;                       ///< INFINITY: does not move
-    pls_vec3 moments;                  ///< about the principal axes
-    pls_vec3 position, velocity, spin; ///< spin: angular momentum in the world
-    pls_quat orientation;
-} two_bodies_body;
+#include "support/moving_body.h"
 
 typedef struct two_bodies_contact
 {
@@ -27,17 +17,15 @@ typedef two_bodies_contact two_bodies_finder(const pls_posed *a, const pls_posed
 
 typedef struct two_bodies
 {
-    two_bodies_body body[2];
+    moving_body body[2];
     double stiffness;
     two_bodies_finder *find;
     void *user;
     two_bodies_contact contact; ///< as of now
 } two_bodies;
 
-two_bodies_body two_bodies_make(const pls_shape *shape, pls_vec3 position, pls_quat orientation);
-pls_posed two_bodies_pose(const two_bodies_body *body);
-/// Angular velocity in the world.
-pls_vec3 two_bodies_angular_velocity(const two_bodies_body *body);
+/// Of density 1, at rest; of an unbounded shape: one that does not move.
+moving_body two_bodies_make(const pls_shape *shape, pls_vec3 position, pls_quat orientation);
 /// Find the contact where the bodies are; before the first step.
 void two_bodies_begin(two_bodies *pair);
 void two_bodies_step(two_bodies *pair, double dt);

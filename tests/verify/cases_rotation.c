@@ -196,30 +196,45 @@ void case_free_rotation_drift(verify_sheet *sheet)
     sheet_below(sheet, (last - first) / energy, 1e-6, "relative change of the mean energy, first to last %d of %d turns", ends, turns);
 }
 
+/// When a spin changes its sign, step after step.
+typedef struct flip_clock
+{
+    double before, first, latest;
+    int counted;
+} flip_clock;
+
+/// `now`: the spin after step k of length dt.
+static void watch_flip(flip_clock *clock, long k, double dt, double now)
+{
+    if (k > 1 && clock->before * now < 0.0)
+    {
+        clock->latest = dt * ((double)k - now / (now - clock->before));
+        if (clock->counted == 0) clock->first = clock->latest;
+        ++clock->counted;
+    }
+    clock->before = now;
+}
+
+static double time_between_flips(const flip_clock *clock) { return (clock->latest - clock->first) / (clock->counted - 1); }
+
 void case_intermediate_axis(verify_sheet *sheet)
 {
     // Close to the separatrix 3 c^2 = a^2: the body spins about its intermediate axis and flips over every 2 K/rate seconds.
     double c = 1.0, a = sqrt(3.0) * c * (1.0 - 1e-3);
     elliptic e = elliptic_from(moments, a, c);
-    double exact = 2.0 * quarter_period(e.modulus) / e.rate, dt = 2.0 * pi / 2.0 / 800.0, first = -1.0, latest = -1.0, before = 0.0;
-    int flips = sheet->thorough ? 40 : 6, counted = 0;
+    double exact = 2.0 * quarter_period(e.modulus) / e.rate, dt = 2.0 * pi / 2.0 / 800.0;
+    const int flips = sheet->thorough ? 40 : 6;
+    flip_clock clock = {0};
     pls_body_id id;
     verify_scene scene = open_top(pls_vec(a, 0, c), dt, &id);
-    for (long k = 1; counted <= flips && k < 1000000; ++k)
+    for (long k = 1; clock.counted <= flips && k < 1000000; ++k)
     {
         MUST(pls_step(scene.world));
         pls_body_motion m = verify_motion(scene.world, id);
-        double now = body_spin(&m).y;
-        if (k > 1 && before * now < 0.0)
-        {
-            latest = dt * ((double)k - now / (now - before));
-            if (counted == 0) first = latest;
-            ++counted;
-        }
-        before = now;
+        watch_flip(&clock, k, dt, body_spin(&m).y);
     }
     verify_close(&scene);
-    sheet_relative(sheet, (latest - first) / (counted - 1), exact, 1e-3, "time between flips, %d flips [s]", flips);
+    sheet_relative(sheet, time_between_flips(&clock), exact, 1e-3, "time between flips, %d flips [s]", flips);
 }
 
 /// A box of edges 1, 0.6, 0.3 with its own moments, m/12 of the squares of two edges, thrown about its middle axis; its other spin is a thousandth of that.
@@ -249,29 +264,22 @@ void case_box_top(verify_sheet *sheet)
     const pls_world_figures start = verify_figures(scene.world);
     const double energy = 0.5 * (own.x * spin.x * spin.x + own.y * spin.y * spin.y + own.z * spin.z * spin.z);
     sheet_relative(sheet, start.energy_rotation, energy, 1e-13, "energy at the start, from the moments of a box [J]");
-    double first = -1.0, latest = -1.0, before = 0.0, length_error = 0.0, energy_error = 0.0;
-    int counted = 0;
+    double length_error = 0.0, energy_error = 0.0;
+    flip_clock clock = {0};
     long k = 1;
-    for (; counted <= flips && k < 1000000; ++k)
+    for (; clock.counted <= flips && k < 1000000; ++k)
     {
         MUST(pls_step(scene.world));
         pls_body_motion m = verify_motion(scene.world, id);
-        double now = body_spin(&m).y;
-        if (k > 1 && before * now < 0.0)
-        {
-            latest = dt * ((double)k - now / (now - before));
-            if (counted == 0) first = latest;
-            ++counted;
-        }
-        before = now;
+        watch_flip(&clock, k, dt, body_spin(&m).y);
         if (k % 50) continue;
         const pls_world_figures f = verify_figures(scene.world);
         length_error = fmax(length_error, fabs(pls_length(f.angular_momentum) / pls_length(start.angular_momentum) - 1.0));
         energy_error = fmax(energy_error, fabs(f.energy_rotation / start.energy_rotation - 1.0));
     }
     verify_close(&scene);
-    sheet_absolute(sheet, first, 0.5 * exact, 2e-3 * exact, "time to the first flip, K/rate [s]");
-    sheet_relative(sheet, (latest - first) / (counted - 1), exact, 1e-3, "time between flips, %d flips, 2 K/rate [s]", flips);
+    sheet_absolute(sheet, clock.first, 0.5 * exact, 2e-3 * exact, "time to the first flip, K/rate [s]");
+    sheet_relative(sheet, time_between_flips(&clock), exact, 1e-3, "time between flips, %d flips, 2 K/rate [s]", flips);
     sheet_below(sheet, length_error, (double)k * 0x1p-53, "relative change of |L| in %ld steps, round-off", k);
     sheet_below(sheet, energy_error, 1e-5, "relative change of the energy");
 }
