@@ -61,24 +61,23 @@ TEXT
 ## Energy
 
 $collisions collisions of each pair without friction and damping: a linear spring, 800 steps per contact (half a period of the spring with the mass that a push at the first touch moves), a stiffness at which a central impact overlaps by 2 % of the size, both grains spinning, random turns and offsets; velocity Verlet
-(\`tests/support/two_bodies.c\`). The same collisions for both methods. Queries that ADMM does not solve in 1000 iterations are answered by the depth, as in simulations. Numbers are |energy after / energy before - 1|. For the depth at most 1e-5 (median) and 2e-3 (worst) are allowed; pairs outside of that: $outside of $pairs. *Not solved* counts queries of the depth and of eq. 14: ADMM then circles slowly where an edge of one grain is nearly parallel to a ridge of the other's
+(\`tests/support/two_bodies.c\`). The same collisions for all: *default*, the depth, and where faces or lines lie on each other the force by all of them (\`faces: manifold\`); the *deepest point* alone (\`faces: point\`);
+*eq. 14*. Queries that ADMM does not solve in 1000 iterations are answered by the depth, as in simulations. Numbers are |energy after / energy before - 1|. By default at most 1e-5 (median) and 2e-3 (worst) are allowed; pairs outside of that: $outside of $pairs. *Not solved* counts queries of the depth and of eq. 14: ADMM then circles slowly where an edge of one grain is nearly parallel to a ridge of the other's
 distance.
 
 ![Change of energy by pair of shapes](figures/contact-energy.svg)
 
-*Blue: penetration depth, red: eq. 14. Marks are medians, lines reach to the worst.*
+*Blue: default, grey: the deepest point alone, red: eq. 14. Marks are medians, lines reach to the worst.*
 
 TEXT
     cat "$scratch/energies.md"
     cat <<TEXT
 
-The worst collisions with the depth are those where faces land nearly flat: the deepest point jumps from one end of the face to the other within a step, which is an error of first order in the time step, where all others are of second order. Box on plane, the depth:
+The worst collisions with the deepest point are those where faces land nearly flat: it jumps from one end of the face to the other within a step, which is an error of first order in the time step, where all others are of second order. That is why by default the face counts as a whole. Box on plane:
 
 TEXT
     cat "$scratch/steps.md"
     cat <<TEXT
-
-Where such contacts rule, \`contact: {faces: manifold}\` or \`volume\` tells the law about the face as a whole.
 
 ## Iterations of ADMM
 

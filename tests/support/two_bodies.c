@@ -17,6 +17,8 @@ static void kick(two_bodies *pair, double dt)
     const pls_vec3 force = pls_scale(c->normal, pair->stiffness * c->delta);
     moving_body_kick(&pair->body[0], pls_scale(force, -1.0), c->point, dt);
     moving_body_kick(&pair->body[1], force, c->point, dt);
+    moving_body_twist(&pair->body[0], pls_scale(force, -c->twist), dt);
+    moving_body_twist(&pair->body[1], pls_scale(force, c->twist), dt);
 }
 
 void two_bodies_begin(two_bodies *pair)
@@ -48,6 +50,6 @@ double two_bodies_effective_mass(const two_bodies *pair, pls_vec3 point, pls_vec
 
 double two_bodies_energy(const two_bodies *pair)
 {
-    const double delta = fmax(pair->contact.delta, 0.0);
+    const double delta = pair->contact.delta > 0.0 ? pair->contact.energy_delta : 0.0;
     return 0.5 * pair->stiffness * delta * delta + moving_body_energy(&pair->body[0]) + moving_body_energy(&pair->body[1]);
 }

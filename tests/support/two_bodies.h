@@ -8,9 +8,11 @@
 
 typedef struct two_bodies_contact
 {
-    double delta;    ///< > 0: overlapping
-    pls_vec3 normal; ///< from A to B
-    pls_vec3 point;  ///< where the force acts
+    double delta;        ///< the force by the stiffness, > 0: overlapping [m]
+    double energy_delta; ///< k times half its square is the energy [m]
+    double twist;        ///< couple about the normal, by the force [m]
+    pls_vec3 normal;     ///< from A to B
+    pls_vec3 point;      ///< where the force acts
 } two_bodies_contact;
 
 typedef two_bodies_contact two_bodies_finder(const pls_posed *a, const pls_posed *b, void *user);
@@ -31,7 +33,7 @@ void two_bodies_begin(two_bodies *pair);
 void two_bodies_step(two_bodies *pair, double dt);
 /// Mass that a push at `point` along the unit vector n moves.
 double two_bodies_effective_mass(const two_bodies *pair, pls_vec3 point, pls_vec3 n);
-/// Kinetic, with k delta^2 / 2.
+/// Kinetic, with that of the spring.
 double two_bodies_energy(const two_bodies *pair);
 
 #endif

@@ -33,8 +33,7 @@ static verify_scene lay(enum lying kind, double gap, double tilt, double spin, d
         shape = verify_add_shape(&scene, "box", NUMBERS(0.5 * length, radius, radius, 0.05));
     if (on_box)
     {
-        pls_body_def box =
-            verify_body_def(&scene, verify_add_shape(&scene, "box", NUMBERS(15.0, 1.0, 0.5, 0.0)), pls_vec(0, 0, -0.5));
+        pls_body_def box = verify_body_def(&scene, verify_add_shape(&scene, "box", NUMBERS(15.0, 1.0, 0.5, 0.0)), pls_vec(0, 0, -0.5));
         box.motion.axes = PLS_AXIS_ALL;
         verify_add(&scene, &box);
     }
