@@ -64,6 +64,8 @@ typedef struct work
          POLYGON]; ///< parts of a polygon that are to be split further; they lie side by side, so that all have together no more corners
     batch batch;
     double depth[POLYGON];
+    double plane[4][PLS_MOST_FACES] __attribute__((aligned(32))); ///< of the other body by columns, the last one several times: normals, offsets
+    double at_middle[PLS_MOST_FACES] __attribute__((aligned(32)));
     uint64_t cuts[PLS_MOST_CORNERS], beyond[PLS_MOST_CORNERS]; ///< of a corner: planes of the other body that it may lie, and lies, beyond
     double round;                                              ///< 1; in the plane 0, where z does not count for distances
     double extent;                                             ///< squared, of P from the origin [m^2]
@@ -206,28 +208,33 @@ static polygon *clip_by_body(work *w, polygon *p, const pls_near_body *s, uint64
         p = left;
         extent = extent_of(p, w->round);
     }
+    if (extent > w->extent) w->extent = extent;
     return p;
 }
 
-/// Planes of `other` beyond which the corners of `s` lie.
-static void take_codes(work *w, const pls_near_body *s, const pls_near_body *other, double blur)
+static inline pls_v4 depths_of_point(const work *w, int f, double x, double y, double z)
 {
-    double plane[4][CODED] __attribute__((aligned(32)));
-    const int count = other->planes < CODED ? other->planes : CODED;
-    for (int f = 0; f < CODED && f < ((count + 3) & ~3); ++f) // the last one several times
+    return pls_v4_load(&w->plane[3][f]) -
+           (pls_v4_load(&w->plane[0][f]) * x + pls_v4_load(&w->plane[1][f]) * y + pls_v4_load(&w->plane[2][f]) * z);
+}
+
+/// Planes of `other`, and those of them beyond which the corners of `s` lie.
+static void take_planes(work *w, const pls_near_body *s, const pls_near_body *other, double blur)
+{
+    const int count = other->planes, coded = count < CODED ? count : CODED;
+    for (int f = 0; f < ((count + 3) & ~3); ++f)
     {
         const pls_half_space *h = &other->face[f < count ? f : count - 1].plane;
-        plane[0][f] = h->normal.x, plane[1][f] = h->normal.y, plane[2][f] = h->normal.z, plane[3][f] = h->offset;
+        w->plane[0][f] = h->normal.x, w->plane[1][f] = h->normal.y, w->plane[2][f] = h->normal.z, w->plane[3][f] = h->offset;
     }
     const pls_v4 in = pls_v4_set(blur), out = pls_v4_set(-blur);
     for (int c = 0; c < s->corners; ++c)
     {
         const pls_vec3 x = s->corner[s->used[c]];
         uint64_t cuts = 0, beyond = 0;
-        for (int f = 0; f < count; f += 4)
+        for (int f = 0; f < coded; f += 4)
         {
-            const pls_v4 d = pls_v4_load(&plane[3][f]) -
-                             (pls_v4_load(&plane[0][f]) * x.x + pls_v4_load(&plane[1][f]) * x.y + pls_v4_load(&plane[2][f]) * x.z);
+            const pls_v4 d = depths_of_point(w, f, x.x, x.y, x.z);
             cuts |= (uint64_t)less(d, in) << f;
             beyond |= (uint64_t)less(d, out) << f;
         }
@@ -345,6 +352,45 @@ static int part(const polygon *p, const double *depth, polygon *in, pls_v4 *out)
     return (int)(y - out);
 }
 
+/// Faces of s that some point of the polygon may be nearest to, first that to which its middle is.
+static int faces_about(work *w, const polygon *p, const pls_near_body *s, int *list)
+{
+    pls_v4 middle = p->x[0];
+    for (int k = 1; k < p->count; ++k) middle += p->x[k];
+    middle *= pls_v4_set(1.0 / p->count);
+    double reach = 0.0; // squared
+    for (int k = 0; k < p->count; ++k)
+    {
+        const pls_v4 x = p->x[k] - middle;
+        const double square = x[0] * x[0] + x[1] * x[1] + w->round * (x[2] * x[2]);
+        reach = square > reach ? square : reach;
+    }
+    for (int f = 0; f < s->faces; f += 4) pls_v4_store(&w->at_middle[f], depths_of_point(w, f, middle[0], middle[1], middle[2]));
+    int nearest = 0;
+    double least = w->at_middle[0];
+    for (int f = 1; f < s->faces; ++f)
+    {
+        const bool less_deep = w->at_middle[f] < least;
+        least = less_deep ? w->at_middle[f] : least, nearest = less_deep ? f : nearest;
+    }
+    // Away from the middle the difference of two depths changes by |n_f - n_g| per length.
+    int count = 1;
+    list[0] = nearest;
+    const pls_v4 x = pls_v4_set(w->plane[0][nearest]), y = pls_v4_set(w->plane[1][nearest]), z = pls_v4_set(w->plane[2][nearest]);
+    for (int f = 0; f < s->faces; f += 4)
+    {
+        const pls_v4 u = pls_v4_load(&w->plane[0][f]) - x, v = pls_v4_load(&w->plane[1][f]) - y, t = pls_v4_load(&w->plane[2][f]) - z;
+        const pls_v4 more = pls_v4_load(&w->at_middle[f]) - least;
+        unsigned may = less(more * more, (u * u + v * v + t * t) * reach);
+        for (; may; may &= may - 1)
+        {
+            const int g = f + __builtin_ctz(may);
+            if (g != nearest && g < s->faces) list[count++] = g;
+        }
+    }
+    return count;
+}
+
 /// A part of P's surface, split by which face of s is nearest to the points just inside.
 static void add_split(work *w, polygon *p, const pls_half_space *lies, const pls_near_body *s, double blur, bool *seen, sums *sum)
 {
@@ -352,28 +398,27 @@ static void add_split(work *w, polygon *p, const pls_half_space *lies, const pls
     {
         int start, nearest, next;
     } wait[PLS_MOST_FACES];
-    int waiting = 0, top = 0, nearest = 0, next = 1;
-    const double extent = extent_of(p, w->round), across = 2.0 * sqrt(extent);
-    if (extent > w->extent) w->extent = extent;
+    int list[PLS_MOST_FACES];
+    const int count = faces_about(w, p, s, list);
+    int waiting = 0, top = 0, nearest = list[0], next = 1;
     for (;;)
     {
-        // Faces in the order of their distance: at some distance none can be nearer.
-        for (; next < s->faces && s->face[next].plane.offset - s->face[nearest].plane.offset <= across; ++next)
+        for (; next < count; ++next)
         {
-            pls_half_space h = nearer(s, nearest, next);
+            pls_half_space h = nearer(s, nearest, list[next]);
             h.offset += blur * pls_dot(h.normal, lies->normal);
-            const int kept = take_depths(p, &h, w->depth);
-            if (kept == p->count) continue;
-            if (kept > 0 && top + p->count + 4 < 2 * POLYGON && p->count + 4 < POLYGON)
+            const int kept = take_depths(p, &h, w->depth), corners = p->count;
+            if (kept == corners) continue;
+            if (kept > 0 && top + 2 * corners < 2 * POLYGON && 2 * corners < POLYGON)
             {
                 polygon *left = p == &w->piece ? &w->spare : &w->piece;
-                wait[waiting].start = top, wait[waiting].nearest = next, wait[waiting].next = next + 1;
+                wait[waiting].start = top, wait[waiting].nearest = list[next], wait[waiting].next = next + 1;
                 ++waiting;
                 top += part(p, w->depth, left, w->waiting + top);
                 p = left;
             }
             else
-                nearest = next;
+                nearest = list[next];
         }
         seen[nearest] = true;
         add_polygon(w, p, lies, &s->face[nearest].plane, opposed(lies, &s->face[nearest].plane), sum);
@@ -390,7 +435,7 @@ static void add_split(work *w, polygon *p, const pls_half_space *lies, const pls
 static void add_faces(work *w, const pls_near_body *own, const pls_near_body *other, bool own_is_b, double blur, bool *own_seen, bool *seen,
                       sums *sum)
 {
-    take_codes(w, own, other, blur);
+    take_planes(w, own, other, blur);
     for (int f = 0; f < own->faces; ++f)
     {
         const pls_near_face *face = &own->face[f];
@@ -458,7 +503,7 @@ static void add_seams(work *w, const pls_near_body *s, const int *list, int coun
 {
     sums sum_of;
     memset(&sum_of, 0, sizeof sum_of);
-    const double reach = sqrt(w->extent);
+    const double reach = 1.001 * sqrt(w->extent);
     for (int i = 0; i < count; ++i)
         for (int j = i + 1; j < count; ++j)
         {
