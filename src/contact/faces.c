@@ -101,6 +101,7 @@ static void take_faces(const pls_posed *p, pls_vec3 origin, pls_vec3 n, const do
         add_face(out, &face);
     }
     out->planes = out->faces;
+    out->reach = pls_length(pls_sub(centre_of(p), origin)) + p->size;
 }
 
 /// Heights of all vertices along n, margin included; the largest.

@@ -64,11 +64,11 @@ typedef struct work
          POLYGON]; ///< parts of a polygon that are to be split further; they lie side by side, so that all have together no more corners
     batch batch;
     double depth[POLYGON];
-    double plane[4][PLS_MOST_FACES] __attribute__((aligned(32))); ///< of the other body by columns, the last one several times: normals, offsets
+    double plane[4][PLS_MOST_FACES]
+        __attribute__((aligned(32))); ///< of the other body by columns, the last one several times: normals, offsets
     double at_middle[PLS_MOST_FACES] __attribute__((aligned(32)));
     uint64_t cuts[PLS_MOST_CORNERS], beyond[PLS_MOST_CORNERS]; ///< of a corner: planes of the other body that it may lie, and lies, beyond
     double round;                                              ///< 1; in the plane 0, where z does not count for distances
-    double extent;                                             ///< squared, of P from the origin [m^2]
     bool seen_a[PLS_MOST_FACES], seen_b[PLS_MOST_FACES];       ///< faces that have a part in P, or are nearest to a part of the surface
 } work;
 
@@ -192,23 +192,31 @@ static polygon *clip(work *w, polygon *p, const pls_half_space *h, polygon *to)
 
 static inline polygon *other_of(work *w, const polygon *p) { return p == &w->one ? &w->two : &w->one; }
 
+/// Of the planes whose bits are set, and those without bit, the first from f on.
+static inline int next_plane(uint64_t cuts, int f)
+{
+    if (f >= CODED) return f;
+    const uint64_t rest = cuts >> f;
+    return rest ? f + __builtin_ctzll(rest) : CODED;
+}
+
 /// Cut `p` by those planes of the body whose bits are set, and those without bit. They are moved outwards by `blur`, for an outline of B's in a plane with normal `own` that plane.
 static polygon *clip_by_body(work *w, polygon *p, const pls_near_body *s, uint64_t cuts, const pls_vec3 *own, double blur)
 {
-    double extent = extent_of(p, w->round);
-    for (int f = 0; f < s->planes && p->count > 0; ++f)
+    double extent = INFINITY;
+    for (int f = next_plane(cuts, 0); f < s->planes && p->count > 0;)
     {
-        if (f < CODED && !(cuts >> f & 1)) continue;
+        const int next = next_plane(cuts, f + 1);
         pls_half_space h = s->face[f].plane;
         const double least = h.offset - fabs(blur);
+        f = next;
         if (least > 0.0 && least * least > extent) continue; // beyond all corners
         h.offset += own ? -blur * pls_dot(h.normal, *own) : blur;
         polygon *left = clip(w, p, &h, other_of(w, p));
         if (left == p) continue;
         p = left;
-        extent = extent_of(p, w->round);
+        if (next < s->planes) extent = extent_of(p, w->round);
     }
-    if (extent > w->extent) w->extent = extent;
     return p;
 }
 
@@ -503,7 +511,7 @@ static void add_seams(work *w, const pls_near_body *s, const int *list, int coun
 {
     sums sum_of;
     memset(&sum_of, 0, sizeof sum_of);
-    const double reach = 1.001 * sqrt(w->extent);
+    const double reach = s->reach < other->reach ? s->reach : other->reach;
     for (int i = 0; i < count; ++i)
         for (int j = i + 1; j < count; ++j)
         {
@@ -571,7 +579,6 @@ void PLS_SIMD(pls_overlap_integrate)(const pls_near_body *a, const pls_near_body
     work w;
     w.batch.count = 0;
     w.round = dimension == 2 ? 0.0 : 1.0;
-    w.extent = 0.0;
     memset(w.seen_a, 0, (size_t)a->faces * sizeof *w.seen_a);
     memset(w.seen_b, 0, (size_t)b->faces * sizeof *w.seen_b);
     const bool wall = !b->face[0].outline;
