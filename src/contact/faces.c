@@ -3,9 +3,9 @@
 // The deepest point of two nearly parallel faces jumps across them from step to step. Both laws here are integrals over the overlap P of the two bodies, which change
 // smoothly, and both forces are the exact gradient of an energy, whatever touches: faces, edges or corners. With d the depth of a point under the surface of a body,
 //     W = integral over P of (d_A + d_B) / 2 dV,        which for parallel faces is the integral of t^2/2 dA, t their local overlap.
-// d is linear in each cell of a body (the points nearest to one of its faces), so a cell of volume V_f and centroid c_f adds V_f d_f(c_f) to the integral, V_f n_f to
-// the force and c_f x V_f n_f to the torque: cutting polytopes by planes (clipped.h) gives all. (Clipping only the two most parallel faces along the normal of the
-// penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to 2e-3 of energy lost or won at tilts of 0.01 to 0.1.)
+// d is linear in each cell of a body (the points nearest to one of its faces) and continuous, so that force and torque are integrals over the surface of P, of polygons:
+// overlap_simd.c. (Clipping only the two most parallel faces along the normal of the penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to
+// 2e-3 of energy lost or won at tilts of 0.01 to 0.1.)
 //
 // VOLUME    energy kn W/A0. Force kn V/A0 for faces, at the centroid of the overlap. Additive: parts of a compound and triangles of a wall push with what lies over them.
 // MANIFOLD  energy kn delta^2/2 with delta = 3Q/2W, Q = integral over P of (d_A^2 + d_B^2)/2 dV, for parallel faces the integral of t^3/3 dA: delta = integral t^3 /

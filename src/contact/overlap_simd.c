@@ -35,7 +35,7 @@ enum {
 typedef struct polygon
 {
     int count;
-    pls_v4 x[POLYGON + 2]; ///< and no matter what
+    pls_v4 x[POLYGON + 2]; ///< x, y, z; clip() writes up to two beyond the last
 } polygon;
 
 /// Triangles by rows.
