@@ -3,9 +3,9 @@
 // The deepest point of two nearly parallel faces jumps across them from step to step. Both laws here are integrals over the overlap P of the two bodies, which change
 // smoothly, and both forces are the exact gradient of an energy, whatever touches: faces, edges or corners. With d the depth of a point under the surface of a body,
 //     W = integral over P of (d_A + d_B) / 2 dV,        which for parallel faces is the integral of t^2/2 dA, t their local overlap.
-// d is linear in each cell of a body (the points nearest to one of its faces), so a cell of volume V_f and centroid c_f adds V_f d_f(c_f) to the integral, V_f n_f to
-// the force and c_f x V_f n_f to the torque: cutting polytopes by planes (clipped.h) gives all. (Clipping only the two most parallel faces along the normal of the
-// penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to 2e-3 of energy lost or won at tilts of 0.01 to 0.1.)
+// d is linear in each cell of a body (the points nearest to one of its faces) and continuous, so that force and torque are integrals over the surface of P, of polygons:
+// overlap_simd.c. (Clipping only the two most parallel faces along the normal of the penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to
+// 2e-3 of energy lost or won at tilts of 0.01 to 0.1.)
 //
 // VOLUME    energy kn W/A0. Force kn V/A0 for faces, at the centroid of the overlap. Additive: parts of a compound and triangles of a wall push with what lies over them.
 // MANIFOLD  energy kn delta^2/2 with delta = 3Q/2W, Q = integral over P of (d_A^2 + d_B^2)/2 dV, for parallel faces the integral of t^3/3 dA: delta = integral t^3 /
@@ -29,38 +29,16 @@
 
 #include "contact/faces.h"
 
-#include "contact/clipped.h"
+#include "contact/overlap.h"
 #include "shape/builtin.h"
 
-enum { OF_A, OF_B, OF_NONE }; // labels of faces
-
-enum { MOST_VERTICES = 2 * PLS_MOST_FACES };
+#include <string.h>
 
 /// Of a body's size: of shallower overlaps rounding leaves no moments, and their force is nothing.
 static const double least_depth = 1e-11;
 
-/// A body as half-spaces about an origin nearby: the faces that may have to do with the overlap, those that `d` goes by first.
-typedef struct body
-{
-    double reach; ///< how far it reaches towards the other [m]
-    int faces;    ///< that d goes by
-    int planes;   ///< all
-    pls_half_space plane[PLS_MOST_FACES];
-} body;
-
-/// A wrench, and what it is the gradient of.
-typedef struct push
-{
-    double energy;
-    pls_vec3 force, torque;
-} push;
-
-/// Both integrals over the overlap with what they push B by.
-typedef struct integrals
-{
-    push W; ///< of d
-    push Q; ///< of d^2
-} integrals;
+/// Of a body's size: faces this near to each other may count as one plane.
+static const double blur = 2e-15;
 
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -73,29 +51,57 @@ static bool is_facet(const pls_shape *s)
 static bool has_faces(const pls_shape *s)
 {
     return s->convex && s->polytope && s->polytope->face_count > 2 && s->polytope->face_count <= PLS_MOST_FACES &&
-           s->polytope->vertex_count <= MOST_VERTICES;
+           s->polytope->vertex_count <= PLS_MOST_CORNERS;
 }
 
 static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
 
 static pls_half_space half_space(pls_vec3 normal, pls_vec3 through) { return (pls_half_space){normal, pls_dot(normal, through)}; }
 
-/// Faces above `lowest` along n, moved by the margin along n.
-static void take_faces(const pls_posed *p, pls_vec3 origin, pls_vec3 n, const double *height, double lowest, body *out)
+/// Keeps the faces in the order of their planes' distances from the origin.
+static void add_face(pls_near_body *out, const pls_near_face *face)
+{
+    int place = out->faces++;
+    for (; place > 0 && out->face[place - 1].plane.offset > face->plane.offset; --place) out->face[place] = out->face[place - 1];
+    out->face[place] = *face;
+}
+
+/// Faces above `lowest` along n, moved by the margin along n; the overlap is above `bottom`.
+static void take_faces(const pls_posed *p, pls_vec3 origin, pls_vec3 n, const double *height, double bottom, double lowest,
+                       pls_near_body *out)
 {
     const pls_polytope *t = p->shape->polytope;
     const pls_vec3 start = pls_add(pls_sub(p->position, origin), pls_scale(n, p->shape->margin * p->scale));
-    out->faces = 0;
+    bool known[PLS_MOST_CORNERS];
+    memset(known, 0, t->vertex_count * sizeof *known);
+    uint8_t high[PLS_MOST_CORNERS];
+    for (uint32_t v = 0; v < t->vertex_count; ++v) high[v] = height[v] >= lowest;
+    out->faces = out->corners = 0;
     for (uint32_t f = 0; f < t->face_count; ++f)
     {
-        bool near = false;
-        for (uint32_t k = t->face_start[f]; k < t->face_start[f + 1] && !near; ++k) near = height[t->face_vertex[k]] >= lowest;
+        const uint32_t *corner = t->face_vertex + t->face_start[f];
+        const uint32_t corners = t->face_start[f + 1] - t->face_start[f];
+        unsigned near = 0;
+        for (uint32_t k = 0; k < corners; ++k) near |= high[corner[k]];
         if (!near) continue;
-        const pls_vec3 corner = t->vertex[t->face_vertex[t->face_start[f]]];
-        out->plane[out->faces++] =
-            half_space(pls_posed_turn(p, t->face_normal[f]), pls_add(start, pls_scale(pls_posed_turn(p, corner), p->scale)));
+        double top = -INFINITY;
+        for (uint32_t k = 0; k < corners; ++k)
+        {
+            const uint32_t v = corner[k];
+            top = height[v] > top ? height[v] : top;
+            if (known[v]) continue;
+            known[v] = true;
+            out->used[out->corners++] = (uint16_t)v;
+            out->corner[v] = pls_add(start, pls_scale(pls_posed_turn(p, t->vertex[v]), p->scale));
+        }
+        const pls_near_face face = {.plane = half_space(pls_posed_turn(p, t->face_normal[f]), out->corner[corner[0]]),
+                                    .outline = corner,
+                                    .corners = (int)corners,
+                                    .enters = top >= bottom};
+        add_face(out, &face);
     }
     out->planes = out->faces;
+    out->reach = pls_length(pls_sub(centre_of(p), origin)) + p->size;
 }
 
 /// Heights of all vertices along n, margin included; the largest.
@@ -108,13 +114,13 @@ static double take_heights(const pls_posed *p, pls_vec3 origin, pls_vec3 n, doub
     for (uint32_t v = 0; v < t->vertex_count; ++v)
     {
         height[v] = start + pls_dot(t->vertex[v], own);
-        most = fmax(most, height[v]);
+        most = height[v] > most ? height[v] : most;
     }
     return most;
 }
 
 /// The prism behind a facet, its front towards `centre`, its margin in front.
-static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, body *out)
+static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, pls_near_body *out)
 {
     const pls_polytope *t = p->shape->polytope;
     const int corners = p->shape->dimension;
@@ -127,109 +133,21 @@ static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, bod
     if (corners == 2) x[2] = pls_add(x[0], pls_vec(0.0, 0.0, 1.0));
     pls_vec3 front = pls_unit(pls_cross(pls_sub(x[1], x[0]), pls_sub(x[2], x[0])));
     if (pls_dot(front, pls_sub(pls_sub(centre, origin), x[0])) < 0.0) front = pls_scale(front, -1.0);
-    out->plane[0] = half_space(front, pls_add(x[0], pls_scale(front, p->shape->margin * p->scale)));
+    out->face[0].plane = half_space(front, pls_add(x[0], pls_scale(front, p->shape->margin * p->scale)));
     out->faces = out->planes = 1;
+    out->face[0].outline = NULL;
     for (int k = 0; k < corners; ++k)
     {
         const pls_vec3 along = corners == 2 ? pls_vec(0.0, 0.0, 1.0) : pls_sub(x[(k + 1) % 3], x[k]);
         pls_vec3 side = pls_unit(pls_cross(along, front));
         if (pls_dot(side, pls_sub(middle, x[k])) > 0.0) side = pls_scale(side, -1.0);
-        out->plane[out->planes++] = half_space(side, x[k]);
+        out->face[out->planes++].plane = half_space(side, x[k]);
     }
-}
-
-// ---- the overlap --------------------------------------------------------------------------------------------------------------------------------------------
-
-/// A block about the overlap, which lies between -b->reach and a->reach along n and in the smaller body.
-static void make_block(const pls_posed *a, const pls_posed *b, pls_vec3 origin, pls_vec3 n, double low, double high, pls_clipped *out)
-{
-    const pls_posed *small = a->size <= b->size ? a : b;
-    const bool flat = small->shape->dimension == 2;
-    const double apart = high - low; // beyond on both sides, so that the block's faces are nobody's
-    pls_vec3 axis[3] = {n, pls_vec(-n.y, n.x, 0.0), pls_vec(0.0, 0.0, 1.0)};
-    if (!flat)
-    {
-        axis[1] = pls_unit(fabs(n.x) < fabs(n.y) ? pls_vec(0.0, n.z, -n.y) : pls_vec(-n.z, 0.0, n.x));
-        axis[2] = pls_cross(n, axis[1]);
-    }
-    const pls_vec3 centre = pls_sub(centre_of(small), origin);
-    const pls_vec3 middle = pls_add(centre, pls_scale(n, 0.5 * (low + high) - pls_dot(centre, n)));
-    const double half[3] = {1.5 * apart, 1.01 * small->size, flat ? 0.5 : 1.01 * small->size};
-    pls_clipped_block(out, middle, axis, half, OF_NONE);
-}
-
-static void cut_by(pls_clipped *c, const body *s, uint8_t label)
-{
-    for (int f = 0; f < s->planes && c->count > 0; ++f) pls_clip(c, &s->plane[f], label);
-}
-
-/// Faces that some point of P may be nearest to: those less deep somewhere than every face is at the most.
-static int faces_about(const body *s, const pls_clipped *P, int *list)
-{
-    double least[PLS_MOST_FACES], deepest = INFINITY;
-    for (int f = 0; f < s->faces; ++f)
-    {
-        double low = INFINITY, high = -INFINITY;
-        for (int v = 0; v < P->count; ++v)
-        {
-            const double d = s->plane[f].offset - pls_dot(s->plane[f].normal, P->x[v]);
-            low = fmin(low, d), high = fmax(high, d);
-        }
-        least[f] = low;
-        deepest = fmin(deepest, high);
-    }
-    int count = 0;
-    for (int f = 0; f < s->faces; ++f)
-        if (least[f] < deepest) list[count++] = f;
-    return count;
 }
 
 static pls_vec3 second_along(const double s[6], pls_vec3 n)
 {
     return pls_vec(s[0] * n.x + s[3] * n.y + s[4] * n.z, s[3] * n.x + s[1] * n.y + s[5] * n.z, s[4] * n.x + s[5] * n.y + s[2] * n.z);
-}
-
-/// In a cell d = offset - n.x; gradients of d and d^2 are -n and -2 d n.
-static void add_cell(integrals *sum, const pls_half_space *h, const pls_clipped_measure *m, double weight)
-{
-    const pls_vec3 n = h->normal, across = second_along(m->second, n);
-    const double d = h->offset * m->volume - pls_dot(n, m->first);                           // integral of d
-    const pls_vec3 dx = pls_sub(pls_scale(m->first, h->offset), across);                     // of d x
-    const double dd = h->offset * d - h->offset * pls_dot(n, m->first) + pls_dot(n, across); // of d^2
-    sum->W.energy += fabs(weight) * d;
-    sum->W.force = pls_add(sum->W.force, pls_scale(n, weight * m->volume));
-    sum->W.torque = pls_add(sum->W.torque, pls_scale(pls_cross(m->first, n), weight));
-    sum->Q.energy += fabs(weight) * dd;
-    sum->Q.force = pls_add(sum->Q.force, pls_scale(n, 2.0 * weight * d));
-    sum->Q.torque = pls_add(sum->Q.torque, pls_scale(pls_cross(dx, n), 2.0 * weight));
-}
-
-/// Add |weight| times the integrals, and what pushes B: along the normals of A's faces (weight > 0), against those of B's.
-static void add_cells(integrals *sum, const body *s, const pls_clipped *P, const pls_clipped_measure *whole, double weight)
-{
-    int list[PLS_MOST_FACES], count = faces_about(s, P, list);
-    if (count == 1)
-    {
-        add_cell(sum, &s->plane[list[0]], whole, weight);
-        return;
-    }
-    for (int i = 0; i < count; ++i)
-    {
-        pls_clipped cell;
-        const pls_half_space *f = &s->plane[list[i]];
-        pls_clipped_copy(&cell, P);
-        for (int j = 0; j < count && cell.count > 0; ++j)
-        {
-            if (j == i) continue;
-            const pls_half_space *g = &s->plane[list[j]];
-            const pls_half_space nearer = {pls_sub(g->normal, f->normal), g->offset - f->offset};
-            pls_clip(&cell, &nearer, OF_NONE);
-        }
-        if (cell.count == 0) continue;
-        pls_clipped_measure m;
-        pls_clipped_measure_of(&cell, &m);
-        add_cell(sum, f, &m, weight);
-    }
 }
 
 // ---- the laws -----------------------------------------------------------------------------------------------------------------------------------------------
@@ -248,7 +166,7 @@ static void no_touch(const pls_depth *depth, pls_touch *out)
 }
 
 /// The wrench as a force on a line, at its point nearest to `middle`, and a couple.
-static void put_on_line(const push *p, pls_vec3 middle, pls_vec3 *point, double *twist)
+static void put_on_line(const pls_push *p, pls_vec3 middle, pls_vec3 *point, double *twist)
 {
     const double square = pls_dot(p->force, p->force);
     const pls_vec3 torque = pls_sub(p->torque, pls_cross(middle, p->force));
@@ -257,7 +175,7 @@ static void put_on_line(const push *p, pls_vec3 middle, pls_vec3 *point, double 
 }
 
 /// Thickness is small, so that it does not matter that the moments are those of the body, not of its shadow.
-static void take_spread(const pls_clipped_measure *P, bool flat, double spread[6])
+static void take_spread(const pls_overlap_integrals *P, bool flat, double spread[6])
 {
     const double V = P->volume;
     const pls_vec3 c = pls_scale(P->first, 1.0 / V);
@@ -268,12 +186,12 @@ static void take_spread(const pls_clipped_measure *P, bool flat, double spread[6
 /// The middle of A's surface in B, in the plane of touch through the point of the normal force. That point wanders as faces tilt: at overlaps far below the size by more than
 /// the size per radian. Friction that wandered along would turn bodies about the normal by what makes them roll, and take from its load what it gives: a box at rest on a
 /// slope would begin to waggle and walk down. The middle of an area is a matter of its outline.
-static pls_vec3 middle_of_area(const pls_clipped_measure *P, const pls_touch *t)
+static pls_vec3 middle_of_area(const pls_overlap_integrals *P, const pls_touch *t)
 {
-    const pls_vec3 area = P->area[OF_A];
+    const pls_vec3 area = P->area;
     const double square = pls_dot(area, area);
     if (!(square > 0.0)) return t->point;
-    const pls_vec3 middle = pls_scale(pls_cross(area, P->area_moment[OF_A]), 1.0 / square);
+    const pls_vec3 middle = pls_scale(pls_cross(area, P->area_moment), 1.0 / square);
     const pls_vec3 apart = pls_sub(middle, t->point);
     return pls_add(t->point, pls_sub(apart, pls_scale(t->normal, pls_dot(apart, t->normal))));
 }
@@ -287,29 +205,30 @@ static double lever_of(const pls_touch *t)
 }
 
 /// Energy kn W / A0.
-static void volume_law(const push *w, const pls_clipped_measure *P, double A0, pls_touch *out)
+static void volume_law(const pls_overlap_integrals *P, double A0, pls_touch *out)
 {
+    const pls_push *w = &P->by_depth;
     const double length = pls_length(w->force);
     out->normal = pls_scale(w->force, 1.0 / length);
     out->delta = length / A0;
-    out->weight = fabs(pls_dot(P->area[OF_A], out->normal)) / A0;
+    out->weight = fabs(pls_dot(P->area, out->normal)) / A0;
     out->energy_delta = sqrt(2.0 * w->energy / A0);
     put_on_line(w, pls_scale(P->first, 1.0 / P->volume), &out->point, &out->twist);
 }
 
 /// Energy kn delta^2 / 2, delta = 3 Q / 2 W.
-static void manifold_law(const integrals *sum, const pls_clipped_measure *P, pls_touch *out)
+static void manifold_law(const pls_overlap_integrals *P, pls_touch *out)
 {
-    const push *W = &sum->W, *Q = &sum->Q;
+    const pls_push *W = &P->by_depth, *Q = &P->by_its_square;
     const double V = P->volume, delta = 1.5 * Q->energy / W->energy;
-    push slope = {.force = pls_scale(pls_sub(pls_scale(Q->force, 1.5), pls_scale(W->force, delta)), 1.0 / W->energy),
-                  .torque = pls_scale(pls_sub(pls_scale(Q->torque, 1.5), pls_scale(W->torque, delta)), 1.0 / W->energy)};
+    pls_push slope = {.force = pls_scale(pls_sub(pls_scale(Q->force, 1.5), pls_scale(W->force, delta)), 1.0 / W->energy),
+                      .torque = pls_scale(pls_sub(pls_scale(Q->torque, 1.5), pls_scale(W->torque, delta)), 1.0 / W->energy)};
     const double length = pls_length(slope.force);
     out->normal = pls_scale(slope.force, 1.0 / length);
     out->delta = delta * length;
     out->energy_delta = delta;
     // d2(delta^2/2) as the overlap grows deeper over a fixed area: by integrals of t^0, t and t^2 over it; 1 for parallel faces, 9/16 at an edge.
-    const double squares = 2.0 * W->energy, area = fabs(pls_dot(P->area[OF_A], out->normal));
+    const double squares = 2.0 * W->energy, area = fabs(pls_dot(P->area, out->normal));
     const double a = delta * V / squares, b = delta * delta * area / squares;
     out->weight = fmax(9.0 - 18.0 * a + 12.0 * a * a - 2.0 * b, 0.0);
     put_on_line(&slope, pls_scale(P->first, 1.0 / V), &out->point, &out->twist);
@@ -352,58 +271,60 @@ static bool is_ellipsoid(const pls_shape *s, double half[3])
 // ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
 
 /// In 2D the overlap is a slab about the plane z = 0: what cancels between its two sides leaves rounding errors, which would push bodies out of the plane.
-static void flatten(integrals *sum, pls_clipped_measure *P)
+static void flatten(pls_overlap_integrals *P)
 {
-    push *both[2] = {&sum->W, &sum->Q};
+    pls_push *both[2] = {&P->by_depth, &P->by_its_square};
     for (int k = 0; k < 2; ++k) both[k]->force.z = both[k]->torque.x = both[k]->torque.y = 0.0;
     P->first.z = 0.0;
 }
 
 static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
 {
-    const bool plane = b->shape->ops->unbounded, facet = is_facet(b->shape);
-    const pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
-    double height_a[MOST_VERTICES], height_b[MOST_VERTICES];
+    const bool plane = b->shape->ops->unbounded, facet = is_facet(b->shape), flat = a->shape->dimension == 2;
+    pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
+    double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS];
     pls_vec3 n = depth->normal;
-    body A, B;
-    if (plane)
-    {
-        B.plane[0] = half_space(pls_posed_gradient(b, b->position), pls_sub(b->position, origin));
-        B.faces = B.planes = 1;
-    }
-    else if (facet)
-        take_facet(b, origin, centre_of(a), &B);
+    pls_near_body A, B;
+    double reach_b;
     if (plane || facet)
-        n = pls_scale(B.plane[0].normal, -1.0), B.reach = B.plane[0].offset;
+    {
+        if (facet)
+            take_facet(b, origin, centre_of(a), &B);
+        else
+        {
+            B.face[0].plane = half_space(pls_posed_gradient(b, b->position), pls_sub(b->position, origin));
+            B.faces = B.planes = 1;
+            B.face[0].outline = NULL;
+        }
+        // To the front, which has no share in moments about a point on it.
+        const pls_vec3 shift = pls_scale(B.face[0].plane.normal, B.face[0].plane.offset);
+        origin = pls_add(origin, shift);
+        for (int f = 1; f < B.planes; ++f) B.face[f].plane.offset -= pls_dot(B.face[f].plane.normal, shift);
+        B.face[0].plane.offset = reach_b = 0.0;
+        B.reach = pls_length(pls_sub(centre_of(a), origin)) + a->size;
+        n = pls_scale(B.face[0].plane.normal, -1.0);
+    }
     else
-        B.reach = take_heights(b, origin, pls_scale(n, -1.0), height_b);
-    A.reach = take_heights(a, origin, n, height_a);
-    const double deep = A.reach + B.reach;
+        reach_b = take_heights(b, origin, pls_scale(n, -1.0), height_b);
+    const double reach_a = take_heights(a, origin, n, height_a), deep = reach_a + reach_b;
     if (!(deep > least_depth * a->size)) return false;
-    take_faces(a, origin, n, height_a, -B.reach - deep, &A);
-    if (!plane && !facet) take_faces(b, origin, pls_scale(n, -1.0), height_b, -A.reach - deep, &B);
+    take_faces(a, origin, n, height_a, -reach_b, -reach_b - deep, &A);
+    if (!plane && !facet) take_faces(b, origin, pls_scale(n, -1.0), height_b, -reach_a, -reach_a - deep, &B);
 
-    pls_clipped P;
-    make_block(a, b, origin, n, -B.reach, A.reach, &P);
-    cut_by(&P, &A, OF_A);
-    cut_by(&P, &B, OF_B);
-    if (P.count == 0) return false;
-    pls_clipped_measure m;
-    pls_clipped_measure_of(&P, &m);
-    integrals sum = {0};
-    const double share = plane || facet ? 1.0 : 0.5;
-    add_cells(&sum, &B, &P, &m, -share);
-    if (share < 1.0) add_cells(&sum, &A, &P, &m, 1.0 - share);
-    if (!(m.volume > 0.0) || !(sum.W.energy > 0.0) || !(sum.Q.energy > 0.0)) return false;
-    if (a->shape->dimension == 2) flatten(&sum, &m);
+    pls_overlap_integrals P;
+    const double size = plane ? a->size : fmax(a->size, b->size);
+    PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, blur * size, &P);
+    const pls_push *W = &P.by_depth, *Q = &P.by_its_square;
+    // Slivers that blur makes where sides only just do not overlap.
+    if (!(P.volume > 100.0 * blur * size * P.surface) || !(W->energy > 0.0) || !(Q->energy > 0.0)) return false;
+    if (flat) flatten(&P);
     if (options->faces == PLS_FACES_VOLUME)
-        volume_law(&sum.W, &m, options->face_area, out);
+        volume_law(&P, options->face_area, out);
     else
-        manifold_law(&sum, &m, out);
-    take_spread(&m, a->shape->dimension == 2, out->spread);
-    const bool flat = a->shape->dimension == 2;
+        manifold_law(&P, out);
+    take_spread(&P, flat, out->spread);
     out->lever = flat ? 0.0 : lever_of(out);
-    out->middle = flat ? out->point : middle_of_area(&m, out);
+    out->middle = flat ? out->point : middle_of_area(&P, out);
     out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
     return isfinite(out->delta) && out->delta > 0.0;
 }

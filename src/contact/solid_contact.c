@@ -306,6 +306,8 @@ static void frame_corners(const pls_solid_list *list, const pls_contact_input *i
     const pls_touch *t = &list->touch[c];
     const pair_motion m = motion_of(in, pair);
     const pls_vec3 turn = pls_sub(m.end_w_i, m.end_w_j);
+    const bool needs_effective = in->laws->law[pair->law].ops->needs_effective;
+    const double radius = needs_effective ? pls_solid_effective_radius(list, c) : 0.0;
     pls_vec3 corner[4];
     pls_touch_corners(t, corner);
     for (size_t p = 0; p < 4; ++p)
@@ -314,7 +316,8 @@ static void frame_corners(const pls_solid_list *list, const pls_contact_input *i
         work->normal_velocity[k + p] = approach + pls_dot(pls_cross(turn, corner[p]), t->normal);
         for (int a = 0; a < 3; ++a) work->slip_velocity[a][k + p] = work->spring[a][k + p] = 0.0;
         for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) work->history[h][k + p] = list->memory[c].history[h];
-        work->effective_radius[k + p] = pls_solid_effective_radius(list, c);
+        if (!needs_effective) continue;
+        work->effective_radius[k + p] = radius;
         work->effective_mass[k + p] = 1.0 / (in->load[pair->row_i].inv_mass + in->load[pair->row_j].inv_mass);
     }
 }

@@ -1,6 +1,6 @@
-// clipped.c -- cutting convex polytopes by planes.
+// clipped.c -- cutting convex polytopes by planes, slowly.
 
-#include "contact/clipped.h"
+#include "support/clipped.h"
 
 #include <string.h>
 

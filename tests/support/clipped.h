@@ -1,10 +1,10 @@
-// clipped.h -- what is left of a block after cutting it by half-spaces: a small convex polytope, its volume, centroid and surfaces.
+// clipped.h -- what is left of a block after cutting it by half-spaces: a small convex polytope and its volume, centroid and surfaces. An oracle for contact/overlap.h.
 //
 // Three edges meet at every vertex, also where more planes do (several vertices then share a place). A cut looks only at the sides on which vertices lie and then
 // works on edges alone, so that rounding errors may move a vertex but never break the surface. After Sugihara & Iri, J. Appl. Math. 1992, 15; moments by the
 // divergence theorem.
-#ifndef PLS_CONTACT_CLIPPED_H
-#define PLS_CONTACT_CLIPPED_H
+#ifndef PLS_TEST_CLIPPED_H
+#define PLS_TEST_CLIPPED_H
 
 #include <particls/types.h>
 
