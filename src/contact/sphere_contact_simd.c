@@ -683,7 +683,7 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
         for (size_t k = 0; k < work->active_count; k += PLS_W) load_lanes(list, in, 0, k, k, work, 0, 0);
         for (size_t k = 0; k < work->active_count; k += PLS_W) measure_lanes(work, k, 0.0, 0);
         for (size_t k = 0; k < work->active_count; k += PLS_W)
-            carry_lanes(list, in, surface, &work->spring[0][k], PLS_CONTACT_BLOCK, fresh_lanes(work, k), k, work, 0);
+            carry_lanes(list, in, surface, &work->spring[0][k], PLS_WORK_STRIDE, fresh_lanes(work, k), k, work, 0);
         if (law->ops->needs_effective) load_effective(list, in, work);
     }
     pls_contact_law(law, in->dt, (work->active_count + 7) / 8 * 8, work);
