@@ -5,6 +5,8 @@
 #include "contact/pair_list.h"
 #include "math/simd.h"
 
+/// Doubles from one array of the work space to the next. Half as much again as a block needs, so that what a conveyor uses of each, the first half kilobyte, is spread
+/// over all sets of the first-level cache; with powers of two all lay in half of them.
 enum { PLS_WORK_STRIDE = PLS_CONTACT_BLOCK + 64 };
 
 /// Arrays of one block of work, filled by the geometry, worked on by the law, read when forces are stored. One per thread.

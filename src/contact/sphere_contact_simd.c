@@ -1,16 +1,19 @@
 // sphere_contact_simd.c -- the hot loop: one block of candidates at a time, as short loops over arrays that stay in the first-level cache.
 //
-// Two ways to the same bits. Where at least a quarter of a block touched at the last step and the law is linear, whole vectors of the list are worked on:
+// Two ways to the same bits. Where at least a quarter of a block touched at the last step and the law is linear, whole vectors of the list are worked on, in parts that
+// hand their results on in arrays (pairs of spheres: as on a conveyor, see `work_whole`; walls: part after part):
 //
-//     load     rows of both bodies to columns over candidates; normal, overlap, and which touch
-//     answer   relative velocities at the contact point, the spring carried into the contact frame of now, the law, force and torque into the
-//              candidate's own slot, the spring back to its history where the pair touches
+//     load     rows of both bodies to columns over candidates
+//     measure  distance, normal, overlap, and which touch
+//     carry    relative velocities at the contact point; the spring carried into the contact frame of now
+//     try      the law, had nothing slid
+//     factor   what the trial is multiplied by to lie in the cone: a root and a division
+//     settle   sliding; the spring back to its history where the pair touches, force and torque into the candidate's own slot
 //
 // Else touching candidates are picked first and any law asked through its door:
 //
 //     filter   which candidates touch (positions and radii only), and which of them touch for the first time
-//     load     as above
-//     frame    as above, to arrays
+//     load, measure, carry   as above
 //     law      forces from overlap, velocity and spring (the user's door)
 //     store    as above
 //
@@ -537,8 +540,7 @@ static inline __attribute__((always_inline)) unsigned walls_touching(const pls_p
 /// Candidates first + k .. (`whole`) or picked contacts k .. , as far as the law; `old`: their springs.
 static inline __attribute__((always_inline)) void frame_walls(const pls_pair_list *list, const pls_contact_input *in,
                                                               const pls_pair_section *section, const wall_frame *wall, size_t first,
-                                                              size_t k, const double *old, size_t stride, int whole,
-                                                              pls_contact_work *work)
+                                                              size_t k, const double *old, size_t stride, int whole, pls_contact_work *work)
 {
     const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0;
     pls_row place[PLS_W], turn[PLS_W];
@@ -572,15 +574,14 @@ static inline __attribute__((always_inline)) void frame_walls(const pls_pair_lis
     for (int a = 0; a < 3; ++a)
     {
         int b = (a + 1) % 3, c = (a + 2) % 3;
-        v[a] =
-            v_end[a] + lever * (w[4 + b] * now[c] - w[4 + c] * now[b]) - (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
+        v[a] = v_end[a] + lever * (w[4 + b] * now[c] - w[4 + c] * now[b]) - (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
     }
 
     // Half a step back.
     double n[3];
     for (int a = 0; a < 3; ++a)
-        n[a] = -wall->normal[a] +
-               0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
+        n[a] =
+            -wall->normal[a] + 0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
     pls_vd old_x[3], old_arm[3], u[3];
     for (int a = 0; a < 3; ++a) old_x[a] = x[a] - (0.5 * in->dt) * (d[4 + a] - wall->velocity[0][a]);
     pls_vd old_radius = d[3] - growth;
@@ -605,8 +606,7 @@ static inline __attribute__((always_inline)) void frame_walls(const pls_pair_lis
     }
     pls_vd_store(&work->delta[k], delta);
     pls_vd_store(&work->normal_velocity[k], vn);
-    carry_spring(spring, now, tilt, (0.5 * in->dt) * ((w[0] + ww[0]) * now[0] + (w[1] + ww[1]) * now[1] + (w[2] + ww[2]) * now[2]),
-                 step);
+    carry_spring(spring, now, tilt, (0.5 * in->dt) * ((w[0] + ww[0]) * now[0] + (w[1] + ww[1]) * now[1] + (w[2] + ww[2]) * now[2]), step);
     if (fresh_lanes(work, k)) begin_springs(work, k, in->dt, fresh_lanes(work, k), step, spring);
     for (int a = 0; a < 3; ++a) pls_vd_store(&work->spring[a][k], spring[a]);
     pls_vd_store(&work->lever[k], lever);
