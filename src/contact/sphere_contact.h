@@ -5,38 +5,42 @@
 #include "contact/pair_list.h"
 #include "math/simd.h"
 
+/// Doubles from one array of the work space to the next. Half as much again as a block needs, so that what a conveyor uses of each, the first half kilobyte, is spread
+/// over all sets of the first-level cache; with powers of two all lay in half of them.
+enum { PLS_WORK_STRIDE = PLS_CONTACT_BLOCK + 64 };
+
 /// Arrays of one block of work, filled by the geometry, worked on by the law, read when forces are stored. One per thread.
 typedef struct pls_contact_work
 {
     // Some places are used twice, so that all of this stays in the first-level cache.
-    _Alignas(64) double normal[3][PLS_CONTACT_BLOCK];        ///< from i to j; first X_j - X_i [m]
-    _Alignas(64) double delta[PLS_CONTACT_BLOCK];            ///< overlap; first r_i + r_j [m]
-    _Alignas(64) double slip_velocity[3][PLS_CONTACT_BLOCK]; ///< at the end of the step; first that of the centres, j less i [m/s]
-    _Alignas(64) double normal_velocity[PLS_CONTACT_BLOCK];  ///< [m/s]
-    _Alignas(64) double spring[3][PLS_CONTACT_BLOCK];        ///< [m]
-    _Alignas(64) double normal_force[PLS_CONTACT_BLOCK];     ///< [N]
-    _Alignas(64) double shear_force[3][PLS_CONTACT_BLOCK];   ///< [N]
-    _Alignas(64) double damping_power[PLS_CONTACT_BLOCK];    ///< [W]
-    _Alignas(64) double slip_work[PLS_CONTACT_BLOCK];        ///< [J]
+    _Alignas(64) double normal[3][PLS_WORK_STRIDE];        ///< from i to j; first X_j - X_i [m]
+    _Alignas(64) double delta[PLS_WORK_STRIDE];            ///< overlap; first r_i + r_j [m]
+    _Alignas(64) double slip_velocity[3][PLS_WORK_STRIDE]; ///< at the end of the step; first that of the centres, j less i [m/s]
+    _Alignas(64) double normal_velocity[PLS_WORK_STRIDE];  ///< [m/s]
+    _Alignas(64) double spring[3][PLS_WORK_STRIDE];        ///< [m]
+    _Alignas(64) double normal_force[PLS_WORK_STRIDE];     ///< [N]
+    _Alignas(64) double shear_force[3][PLS_WORK_STRIDE];   ///< [N]
+    _Alignas(64) double damping_power[PLS_WORK_STRIDE];    ///< [W]
+    _Alignas(64) double slip_work[PLS_WORK_STRIDE];        ///< [J]
     // of whole vectors
-    _Alignas(64) double factor[PLS_CONTACT_BLOCK]; ///< of the trial shear force; first its square [N^2]
-    _Alignas(64) double cone[PLS_CONTACT_BLOCK];   ///< largest shear force [N]
+    _Alignas(64) double factor[PLS_WORK_STRIDE]; ///< of the trial shear force; first its square [N^2]
+    _Alignas(64) double cone[PLS_WORK_STRIDE];   ///< largest shear force [N]
     // of sphere pairs
-    _Alignas(64) double distance[PLS_CONTACT_BLOCK];     ///< of the centres [m]
-    _Alignas(64) double inv_distance[PLS_CONTACT_BLOCK]; ///< [1/m]
-    _Alignas(64) double velocity[3][PLS_CONTACT_BLOCK];  ///< of the centres, j less i, mid-step [m/s]
-    _Alignas(64) double spin[3][PLS_CONTACT_BLOCK];      ///< w_i + w_j, mid-step [rad/s]
-    _Alignas(64) double spin_end[3][PLS_CONTACT_BLOCK];  ///< w_i + w_j at the end of the step [rad/s]
-    _Alignas(64) double skew[3][PLS_CONTACT_BLOCK];      ///< (r_i - r_j)/2 (w_i - w_j), mid-step [m/s]
-    _Alignas(64) double skew_end[3][PLS_CONTACT_BLOCK];  ///< the same at the end of the step
-    _Alignas(64) double growth[PLS_CONTACT_BLOCK];       ///< of both radii in half a step [m]
+    _Alignas(64) double distance[PLS_WORK_STRIDE];     ///< of the centres [m]
+    _Alignas(64) double inv_distance[PLS_WORK_STRIDE]; ///< [1/m]
+    _Alignas(64) double velocity[3][PLS_WORK_STRIDE];  ///< of the centres, j less i, mid-step [m/s]
+    _Alignas(64) double spin[3][PLS_WORK_STRIDE];      ///< w_i + w_j, mid-step [rad/s]
+    _Alignas(64) double spin_end[3][PLS_WORK_STRIDE];  ///< w_i + w_j at the end of the step [rad/s]
+    _Alignas(64) double skew[3][PLS_WORK_STRIDE];      ///< (r_i - r_j)/2 (w_i - w_j), mid-step [m/s]
+    _Alignas(64) double skew_end[3][PLS_WORK_STRIDE];  ///< the same at the end of the step
+    _Alignas(64) double growth[PLS_WORK_STRIDE];       ///< of both radii in half a step [m]
     // of walls
-    _Alignas(64) double lever[PLS_CONTACT_BLOCK];    ///< distance of the contact point from the centre of i [m]
-    _Alignas(64) double point[3][PLS_CONTACT_BLOCK]; ///< contact point from the wall's position [m]
+    _Alignas(64) double lever[PLS_WORK_STRIDE];    ///< distance of the contact point from the centre of i [m]
+    _Alignas(64) double point[3][PLS_WORK_STRIDE]; ///< contact point from the wall's position [m]
     // for laws that ask
-    _Alignas(64) double effective_radius[PLS_CONTACT_BLOCK];
-    _Alignas(64) double effective_mass[PLS_CONTACT_BLOCK];
-    _Alignas(64) double history[PLS_LAW_MAX_HISTORY][PLS_CONTACT_BLOCK];
+    _Alignas(64) double effective_radius[PLS_WORK_STRIDE];
+    _Alignas(64) double effective_mass[PLS_WORK_STRIDE];
+    _Alignas(64) double history[PLS_LAW_MAX_HISTORY][PLS_WORK_STRIDE];
     uint32_t active[PLS_CONTACT_BLOCK + 16]; ///< candidates that were picked because they touch
     size_t active_count;
     uint8_t now[PLS_CONTACT_BLOCK / 8];   ///< bit k % 8 of byte k / 8: candidate k of a block of whole vectors touches

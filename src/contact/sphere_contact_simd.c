@@ -1,16 +1,19 @@
 // sphere_contact_simd.c -- the hot loop: one block of candidates at a time, as short loops over arrays that stay in the first-level cache.
 //
-// Two ways to the same bits. Where at least a quarter of a block touched at the last step and the law is linear, whole vectors of the list are worked on:
+// Two ways to the same bits. Where at least a quarter of a block touched at the last step and the law is linear, whole vectors of the list are worked on, in parts that
+// hand their results on in arrays (pairs of spheres: as on a conveyor, see `work_whole`; walls: part after part):
 //
-//     load     rows of both bodies to columns over candidates; normal, overlap, and which touch
-//     answer   relative velocities at the contact point, the spring carried into the contact frame of now, the law, force and torque into the
-//              candidate's own slot, the spring back to its history where the pair touches
+//     load     rows of both bodies to columns over candidates
+//     measure  distance, normal, overlap, and which touch
+//     carry    relative velocities at the contact point; the spring carried into the contact frame of now
+//     try      the law, had nothing slid
+//     factor   what the trial is multiplied by to lie in the cone: a root and a division
+//     settle   sliding; the spring back to its history where the pair touches, force and torque into the candidate's own slot
 //
 // Else touching candidates are picked first and any law asked through its door:
 //
 //     filter   which candidates touch (positions and radii only), and which of them touch for the first time
-//     load     as above
-//     frame    as above, to arrays
+//     load, measure, carry   as above
 //     law      forces from overlap, velocity and spring (the user's door)
 //     store    as above
 //
@@ -452,12 +455,11 @@ static inline __attribute__((always_inline)) void factor_lanes(pls_contact_work 
     pls_vd_store(&work->factor[m], pls_linear_factor(pls_vd_load(&work->factor[m]), pls_vd_load(&work->cone[m])));
 }
 
-/// Last part: sliding; springs of lanes that touch go back to their history, forces to the slots.
-static inline __attribute__((always_inline)) void settle_lanes(const pls_linear_values *law, pls_vm touching, double *history, double *slot,
-                                                               size_t m, pls_contact_work *work)
+/// Last part: sliding; springs of lanes that touch go back to their history. Gives the shear force on i, returns the work of sliding.
+static inline __attribute__((always_inline)) pls_vd settle_lanes(const pls_linear_values *law, pls_vm touching, double *history, size_t m,
+                                                                 const pls_contact_work *work, pls_vd shear[3])
 {
-    double *row[PLS_W];
-    pls_vd v[3], spring[3], shear[3];
+    pls_vd v[3], spring[3];
     for (int a = 0; a < 3; ++a)
     {
         v[a] = pls_vd_load(&work->slip_velocity[a][m]);
@@ -466,8 +468,7 @@ static inline __attribute__((always_inline)) void settle_lanes(const pls_linear_
     }
     pls_vd slip_work = pls_linear_settle(law, pls_vd_load(&work->factor[m]), v, shear, spring);
     for (int a = 0; a < 3; ++a) pls_vd_store(history + 8 * a, pls_vd_choose(touching, spring[a], pls_vd_load(history + 8 * a)));
-    for (int lane = 0; lane < PLS_W; ++lane) row[lane] = slot + lane * PLS_SLOT;
-    store_lanes(work, m, shear, slip_work, row, PLS_W);
+    return slip_work;
 }
 
 /// What any law answered for the picked contacts.
@@ -507,147 +508,172 @@ static wall_frame wall_of(const pls_contact_input *in, uint32_t row)
                         .spin = {{w->wx, w->wy, w->wz}, {w->end_x, w->end_y, w->end_z}}};
 }
 
-static void filter_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_pair_block *block,
-                         pls_contact_work *work, const wall_frame *wall)
+/// Which of candidates k .. k + 7 of the block touch.
+static inline __attribute__((always_inline)) unsigned walls_touching(const pls_pair_list *list, const pls_contact_input *in,
+                                                                     const pls_pair_section *section, const pls_pair_block *block, size_t k,
+                                                                     const wall_frame *wall)
 {
+    const size_t c = block->first + k;
     const double behind = -section->depth;
-    for (size_t k = 0; k < block->count; k += 8)
+    unsigned now = 0;
+    for (int lane = 0; in->large && lane < 8; ++lane) // bodies at a wall lie far apart in memory
     {
-        size_t c = block->first + k;
-        unsigned now = 0;
-        for (int lane = 0; in->large && lane < 8; ++lane) // bodies at a wall lie far apart in memory
-        {
-            uint32_t row = list->row_i[c + FETCH_AHEAD + (size_t)lane];
-            __builtin_prefetch(&in->place[row]);
-            __builtin_prefetch(&in->spin[row]);
-            __builtin_prefetch(&in->load[row]);
-            __builtin_prefetch(&in->before[row]);
-        }
-        for (int half = 0; half < 8; half += PLS_W)
-        {
-            pls_v4 row[PLS_W];
-            for (int lane = 0; lane < PLS_W; ++lane) row[lane] = pls_v4_load(&in->place[list->row_i[c + (size_t)(half + lane)]].x);
-            pls_vd d[4];
-            pls_columns4(row, d);
-            pls_vd height = wall->normal[0] * (d[0] - wall->position[0]) + wall->normal[1] * (d[1] - wall->position[1]) +
-                            wall->normal[2] * (d[2] - wall->position[2]);
-            now |= (pls_vd_less(height, d[3]) & pls_vd_less(pls_vd_set(behind), height)) << half;
-        }
-        pick_touching(list, section, c, now & valid_lanes(block, k), work);
+        uint32_t row = list->row_i[c + FETCH_AHEAD + (size_t)lane];
+        __builtin_prefetch(&in->place[row]);
+        __builtin_prefetch(&in->spin[row]);
+        __builtin_prefetch(&in->load[row]);
+        __builtin_prefetch(&in->before[row]);
     }
+    for (int half = 0; half < 8; half += PLS_W)
+    {
+        pls_v4 row[PLS_W];
+        for (int lane = 0; lane < PLS_W; ++lane) row[lane] = pls_v4_load(&in->place[list->row_i[c + (size_t)(half + lane)]].x);
+        pls_vd d[4];
+        pls_columns4(row, d);
+        pls_vd height = wall->normal[0] * (d[0] - wall->position[0]) + wall->normal[1] * (d[1] - wall->position[1]) +
+                        wall->normal[2] * (d[2] - wall->position[2]);
+        now |= (pls_vd_less(height, d[3]) & pls_vd_less(pls_vd_set(behind), height)) << half;
+    }
+    return now & valid_lanes(block, k);
 }
 
-static void frame_walls(const pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, pls_contact_work *work,
-                        const wall_frame *wall)
+/// Candidates first + k .. (`whole`) or picked contacts k .. , as far as the law; `old`: their springs.
+static inline __attribute__((always_inline)) void frame_walls(const pls_pair_list *list, const pls_contact_input *in,
+                                                              const pls_pair_section *section, const wall_frame *wall, size_t first,
+                                                              size_t k, const double *old, size_t stride, int whole, pls_contact_work *work)
 {
     const double inward = in->laws->law[section->law].lever_at_surface ? 0.0 : 1.0;
-    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    pls_row place[PLS_W], turn[PLS_W];
+    pls_vd growth, inv_mass;
+    for (int lane = 0; lane < PLS_W; ++lane)
     {
-        pls_row place[PLS_W], turn[PLS_W];
-        pls_vd growth, inv_mass;
-        for (int lane = 0; lane < PLS_W; ++lane)
-        {
-            size_t c = work->active[k + (size_t)lane];
-            uint32_t i = list->row_i[c];
-            place[lane] = pls_row_load(&in->place[i].x);
-            turn[lane] = pls_row_load(&in->spin[i].wx);
-            growth[lane] = in->before[i].growth;
-            inv_mass[lane] = in->load[i].inv_mass;
-        }
-        pls_vd d[8], w[8], x[3], arm[3], height = pls_vd_set(0.0);
-        pls_columns8(place, d);
-        pls_columns8(turn, w);
-        for (int a = 0; a < 3; ++a)
-        {
-            x[a] = d[a] - wall->position[a];
-            height = height + wall->normal[a] * x[a];
-        }
-        pls_vd now[3], v[3], delta = d[3] - height, lever = d[3] - (0.5 * inward) * delta;
-        for (int a = 0; a < 3; ++a) now[a] = pls_vd_set(-wall->normal[a]);
-        for (int a = 0; a < 3; ++a)
-        {
-            arm[a] = x[a] + lever * now[a]; // contact point from the wall's position
-            pls_vd_store(&work->point[a][k], arm[a]);
-        }
-        const double *ww = wall->spin[0], *end = wall->spin[1];
-        const pls_vd v_end[3] = {d[4] + w[3], d[5] + w[7], d[6] + d[7]};
-        for (int a = 0; a < 3; ++a)
-        {
-            int b = (a + 1) % 3, c = (a + 2) % 3;
-            v[a] =
-                v_end[a] + lever * (w[4 + b] * now[c] - w[4 + c] * now[b]) - (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
-        }
-
-        // Half a step back.
-        double n[3];
-        for (int a = 0; a < 3; ++a)
-            n[a] = -wall->normal[a] +
-                   0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
-        pls_vd old_x[3], old_arm[3], u[3];
-        for (int a = 0; a < 3; ++a) old_x[a] = x[a] - (0.5 * in->dt) * (d[4 + a] - wall->velocity[0][a]);
-        pls_vd old_radius = d[3] - growth;
-        pls_vd old_lever = old_radius - (0.5 * inward) * (old_radius + (n[0] * old_x[0] + n[1] * old_x[1] + n[2] * old_x[2]));
-        for (int a = 0; a < 3; ++a) old_arm[a] = old_x[a] + old_lever * n[a];
-        for (int a = 0; a < 3; ++a)
-        {
-            int b = (a + 1) % 3, c = (a + 2) % 3;
-            u[a] = d[4 + a] + old_lever * (w[b] * n[c] - w[c] * n[b]) - (wall->velocity[0][a] + (ww[b] * old_arm[c] - ww[c] * old_arm[b]));
-        }
-        pls_vd vn = dot(v, now), along = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
-        for (int a = 0; a < 3; ++a) u[a] = u[a] - along * n[a];
-        pls_vd un = dot(u, now); // small: the frame has turned since
-        pls_vd step[3], spring[3], tilt[3];
-        for (int a = 0; a < 3; ++a)
-        {
-            step[a] = in->dt * (u[a] - un * now[a]);
-            tilt[a] = now[a] - n[a];
-            spring[a] = pls_vd_load(&work->spring[a][k]);
-            pls_vd_store(&work->normal[a][k], now[a]);
-            pls_vd_store(&work->slip_velocity[a][k], v[a] - vn * now[a]);
-        }
-        pls_vd_store(&work->delta[k], delta);
-        pls_vd_store(&work->normal_velocity[k], vn);
-        carry_spring(spring, now, tilt, (0.5 * in->dt) * ((w[0] + ww[0]) * now[0] + (w[1] + ww[1]) * now[1] + (w[2] + ww[2]) * now[2]),
-                     step);
-        if (fresh_lanes(work, k)) begin_springs(work, k, in->dt, fresh_lanes(work, k), step, spring);
-        for (int a = 0; a < 3; ++a) pls_vd_store(&work->spring[a][k], spring[a]);
-        pls_vd_store(&work->lever[k], lever);
-        pls_vd_store(&work->effective_mass[k], 1.0 / (inv_mass + wall->inv_mass));
-        pls_vd_store(&work->effective_radius[k], d[3]);
+        size_t c = whole ? first + k + (size_t)lane : work->active[k + (size_t)lane];
+        uint32_t i = list->row_i[c];
+        place[lane] = pls_row_load(&in->place[i].x);
+        turn[lane] = pls_row_load(&in->spin[i].wx);
+        growth[lane] = in->before[i].growth;
+        inv_mass[lane] = in->load[i].inv_mass;
     }
+    pls_vd d[8], w[8], x[3], arm[3], height = pls_vd_set(0.0);
+    pls_columns8(place, d);
+    pls_columns8(turn, w);
+    for (int a = 0; a < 3; ++a)
+    {
+        x[a] = d[a] - wall->position[a];
+        height = height + wall->normal[a] * x[a];
+    }
+    pls_vd now[3], v[3], delta = d[3] - height, lever = d[3] - (0.5 * inward) * delta;
+    for (int a = 0; a < 3; ++a) now[a] = pls_vd_set(-wall->normal[a]);
+    for (int a = 0; a < 3; ++a)
+    {
+        arm[a] = x[a] + lever * now[a]; // contact point from the wall's position
+        pls_vd_store(&work->point[a][k], arm[a]);
+    }
+    const double *ww = wall->spin[0], *end = wall->spin[1];
+    const pls_vd v_end[3] = {d[4] + w[3], d[5] + w[7], d[6] + d[7]};
+    for (int a = 0; a < 3; ++a)
+    {
+        int b = (a + 1) % 3, c = (a + 2) % 3;
+        v[a] = v_end[a] + lever * (w[4 + b] * now[c] - w[4 + c] * now[b]) - (wall->velocity[1][a] + (end[b] * arm[c] - end[c] * arm[b]));
+    }
+
+    // Half a step back.
+    double n[3];
+    for (int a = 0; a < 3; ++a)
+        n[a] =
+            -wall->normal[a] + 0.5 * in->dt * (ww[(a + 1) % 3] * wall->normal[(a + 2) % 3] - ww[(a + 2) % 3] * wall->normal[(a + 1) % 3]);
+    pls_vd old_x[3], old_arm[3], u[3];
+    for (int a = 0; a < 3; ++a) old_x[a] = x[a] - (0.5 * in->dt) * (d[4 + a] - wall->velocity[0][a]);
+    pls_vd old_radius = d[3] - growth;
+    pls_vd old_lever = old_radius - (0.5 * inward) * (old_radius + (n[0] * old_x[0] + n[1] * old_x[1] + n[2] * old_x[2]));
+    for (int a = 0; a < 3; ++a) old_arm[a] = old_x[a] + old_lever * n[a];
+    for (int a = 0; a < 3; ++a)
+    {
+        int b = (a + 1) % 3, c = (a + 2) % 3;
+        u[a] = d[4 + a] + old_lever * (w[b] * n[c] - w[c] * n[b]) - (wall->velocity[0][a] + (ww[b] * old_arm[c] - ww[c] * old_arm[b]));
+    }
+    pls_vd vn = dot(v, now), along = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
+    for (int a = 0; a < 3; ++a) u[a] = u[a] - along * n[a];
+    pls_vd un = dot(u, now); // small: the frame has turned since
+    pls_vd step[3], spring[3], tilt[3];
+    for (int a = 0; a < 3; ++a)
+    {
+        step[a] = in->dt * (u[a] - un * now[a]);
+        tilt[a] = now[a] - n[a];
+        spring[a] = pls_vd_load(old + (size_t)a * stride);
+        pls_vd_store(&work->normal[a][k], now[a]);
+        pls_vd_store(&work->slip_velocity[a][k], v[a] - vn * now[a]);
+    }
+    pls_vd_store(&work->delta[k], delta);
+    pls_vd_store(&work->normal_velocity[k], vn);
+    carry_spring(spring, now, tilt, (0.5 * in->dt) * ((w[0] + ww[0]) * now[0] + (w[1] + ww[1]) * now[1] + (w[2] + ww[2]) * now[2]), step);
+    if (fresh_lanes(work, k)) begin_springs(work, k, in->dt, fresh_lanes(work, k), step, spring);
+    for (int a = 0; a < 3; ++a) pls_vd_store(&work->spring[a][k], spring[a]);
+    pls_vd_store(&work->lever[k], lever);
+    if (whole) return; // the linear law does not ask
+    pls_vd_store(&work->effective_mass[k], 1.0 / (inv_mass + wall->inv_mass));
+    pls_vd_store(&work->effective_radius[k], d[3]);
 }
 
-static void store_walls(pls_pair_list *list, const pls_contact_work *work)
+/// Force, power, torque and work for the body and for the wall into the slots of `candidate`s.
+static inline __attribute__((always_inline)) void store_walls(const pls_pair_list *list, const pls_contact_work *work, size_t k,
+                                                              const pls_vd shear[3], pls_vd slip_work, const size_t candidate[PLS_W],
+                                                              int lanes)
 {
-    for (size_t k = 0; k < work->active_count; k += PLS_W)
+    pls_vd n[3], f[3], arm[3], fn = pls_vd_load(&work->normal_force[k]), lever = pls_vd_load(&work->lever[k]), first[8], second[8];
+    for (int a = 0; a < 3; ++a)
     {
-        pls_vd n[3], ft[3], f[3], arm[3], fn = pls_vd_load(&work->normal_force[k]), lever = pls_vd_load(&work->lever[k]), first[8],
-                                          second[8];
-        for (int a = 0; a < 3; ++a)
-        {
-            n[a] = pls_vd_load(&work->normal[a][k]);
-            ft[a] = pls_vd_load(&work->shear_force[a][k]);
-            arm[a] = pls_vd_load(&work->point[a][k]);
-            f[a] = ft[a] - fn * n[a];
-        }
-        for (int a = 0; a < 3; ++a)
-        {
-            int b = (a + 1) % 3, c = (a + 2) % 3;
-            first[a] = f[a];
-            first[4 + a] = lever * (n[b] * ft[c] - n[c] * ft[b]); // (c - X_i) x F
-            second[a] = -f[a];
-            second[4 + a] = arm[c] * f[b] - arm[b] * f[c]; // (c - X_j) x (-F)
-        }
-        first[3] = second[3] = pls_vd_load(&work->damping_power[k]);
-        first[7] = second[7] = pls_vd_load(&work->slip_work[k]);
-        double *row[PLS_W], *next[PLS_W];
-        for (int lane = 0; lane < PLS_W; ++lane)
-        {
-            row[lane] = pls_wall_slot(list, work->active[k + (size_t)lane]);
-            next[lane] = row[lane] + 8;
-        }
-        pls_rows8(first, row, lanes_left(work, k));
-        pls_rows8(second, next, lanes_left(work, k));
+        n[a] = pls_vd_load(&work->normal[a][k]);
+        arm[a] = pls_vd_load(&work->point[a][k]);
+        f[a] = shear[a] - fn * n[a];
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+        int b = (a + 1) % 3, c = (a + 2) % 3;
+        first[a] = f[a];
+        first[4 + a] = lever * (n[b] * shear[c] - n[c] * shear[b]); // (c - X_i) x F
+        second[a] = -f[a];
+        second[4 + a] = arm[c] * f[b] - arm[b] * f[c]; // (c - X_j) x (-F)
+    }
+    first[3] = second[3] = pls_vd_load(&work->damping_power[k]);
+    first[7] = second[7] = slip_work;
+    double *row[PLS_W], *next[PLS_W];
+    for (int lane = 0; lane < PLS_W; ++lane)
+    {
+        row[lane] = pls_wall_slot(list, candidate[lane]);
+        next[lane] = row[lane] + 8;
+    }
+    pls_rows8(first, row, lanes);
+    pls_rows8(second, next, lanes);
+}
+
+/// All candidates of a block of walls, the linear law. Walls are few, so plain loops do.
+static void work_whole_walls(pls_pair_list *list, const pls_contact_input *in, const pls_pair_section *section, const pls_pair_block *block,
+                             pls_contact_work *work)
+{
+    const wall_frame wall = wall_of(in, section->wall_row);
+    const pls_linear_values law = pls_linear_take(in->laws->law[section->law].constants, in->dt);
+    for (size_t k = 0; k < block->count; k += 8)
+    {
+        unsigned now = walls_touching(list, in, section, block, k, &wall);
+        work->now[k >> 3] = (uint8_t)now;
+        work->fresh[k >> 3] = (uint8_t)note_touching(list, section, block->first + k, now);
+    }
+    const size_t count = (block->count + 7) / 8 * 8;
+    for (size_t k = 0; k < count; k += PLS_W)
+    {
+        frame_walls(list, in, section, &wall, block->first, k, pls_pair_history(list, section, block->first + k), 8, 1, work);
+        try_lanes(&law, work, k);
+    }
+    for (size_t k = 0; k < count; k += PLS_W) factor_lanes(work, k);
+    for (size_t k = 0; k < count; k += PLS_W)
+    {
+        size_t candidate[PLS_W];
+        for (size_t lane = 0; lane < PLS_W; ++lane) candidate[lane] = block->first + k + lane;
+        pls_vd shear[3];
+        pls_vd slip_work = settle_lanes(&law, pls_vm_of((unsigned)work->now[k >> 3] >> (k & 7)),
+                                        pls_pair_history(list, section, block->first + k), k, work, shear);
+        store_walls(list, work, k, shear, slip_work, candidate, PLS_W);
     }
 }
 
@@ -665,7 +691,8 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
     if (section->wall)
     {
         wall = wall_of(in, section->wall_row);
-        filter_walls(list, in, section, block, work, &wall);
+        for (size_t k = 0; k < block->count; k += 8)
+            pick_touching(list, section, block->first + k, walls_touching(list, in, section, block, k, &wall), work);
     }
     else if (in->domain->any_periodic)
         filter_pairs(list, in, section, block, work, 1);
@@ -677,18 +704,26 @@ static void work_picked(pls_pair_list *list, const pls_contact_input *in, const 
 
     load_history(list, section, work);
     if (section->wall)
-        frame_walls(list, in, section, work, &wall);
+        for (size_t k = 0; k < work->active_count; k += PLS_W)
+            frame_walls(list, in, section, &wall, 0, k, &work->spring[0][k], PLS_WORK_STRIDE, 0, work);
     else
     {
         for (size_t k = 0; k < work->active_count; k += PLS_W) load_lanes(list, in, 0, k, k, work, 0, 0);
         for (size_t k = 0; k < work->active_count; k += PLS_W) measure_lanes(work, k, 0.0, 0);
         for (size_t k = 0; k < work->active_count; k += PLS_W)
-            carry_lanes(list, in, surface, &work->spring[0][k], PLS_CONTACT_BLOCK, fresh_lanes(work, k), k, work, 0);
+            carry_lanes(list, in, surface, &work->spring[0][k], PLS_WORK_STRIDE, fresh_lanes(work, k), k, work, 0);
         if (law->ops->needs_effective) load_effective(list, in, work);
     }
     pls_contact_law(law, in->dt, (work->active_count + 7) / 8 * 8, work);
     if (section->wall)
-        store_walls(list, work);
+        for (size_t k = 0; k < work->active_count; k += PLS_W)
+        {
+            size_t candidate[PLS_W];
+            pls_vd shear[3];
+            for (size_t lane = 0; lane < PLS_W; ++lane) candidate[lane] = work->active[k + lane];
+            for (int a = 0; a < 3; ++a) shear[a] = pls_vd_load(&work->shear_force[a][k]);
+            store_walls(list, work, k, shear, pls_vd_load(&work->slip_work[k]), candidate, lanes_left(work, k));
+        }
     else
         store_pairs(list, in, work);
     store_history(list, section, work);
@@ -761,7 +796,11 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
             for (size_t v = 0; v < 8; v += PLS_W)
             {
                 if (input.large) fetch_slots(&pairs, section, first + k + v + PLS_CONTACT_BLOCK, 0);
-                settle_lanes(&law, pls_vm_of((unsigned)work->now[k >> 3] >> v), kept + v, slot + v * PLS_SLOT, m + v, work);
+                double *row[PLS_W];
+                pls_vd shear[3];
+                pls_vd slip_work = settle_lanes(&law, pls_vm_of((unsigned)work->now[k >> 3] >> v), kept + v, m + v, work, shear);
+                for (size_t lane = 0; lane < PLS_W; ++lane) row[lane] = slot + (v + lane) * PLS_SLOT;
+                store_lanes(work, m + v, shear, slip_work, row, PLS_W);
                 for (size_t lane = v; !plain && !pairs.equal_radii && lane < v + PLS_W; ++lane)
                     store_skew(&pairs, &input, first + k + lane, work->inv_distance[m + lane]);
             }
@@ -790,8 +829,10 @@ void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *i
 {
     const pls_pair_section *section = &list->section[block->section];
     const pls_law_ops *ops = in->laws->law[section->law].ops;
-    if (section->wall || ops->evaluate != pls_linear_evaluate || !whole_pays(list, block))
+    if (ops->evaluate != pls_linear_evaluate || !whole_pays(list, block))
         work_picked(list, in, section, block, work);
+    else if (section->wall)
+        work_whole_walls(list, in, section, block, work);
     else if (in->domain->any_periodic || in->growing || !list->equal_radii)
         work_whole(list, in, section, block, work, 0);
     else
