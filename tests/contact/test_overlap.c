@@ -271,9 +271,11 @@ static void bodies_on_facets_agree(void **state)
         const int dimension = round % 4 == 3 ? 2 : 3;
         const double mesh_values[] = {0.05, 1.0}, line_values[] = {0.05, 0.0};
         const pls_vec3 line[3] = {{-1.5, 0, 0}, {0.1, 0.2, 0}, {1.5, 0, 0}};
-        pls_shape *floor = dimension == 3 ? solids_make(&pls_mesh_shape, 3, &(pls_shape_input){.values = mesh_values, .path = "floor.obj"})
-                                          : solids_make(&pls_polyline_shape, 2,
-                                                        &(pls_shape_input){.values = line_values, .points = line, .point_count = 3});
+        pls_shape *floor =
+            dimension == 3
+                ? solids_make(&pls_mesh_shape, 3, &(pls_shape_input){.values = mesh_values, .value_count = 2, .path = "floor.obj"})
+                : solids_make(&pls_polyline_shape, 2,
+                              &(pls_shape_input){.values = line_values, .value_count = 2, .points = line, .point_count = 3});
         pls_shape *s = round & 1 ? random_shape(dimension) : solids_box(dimension, 0.5, 0.3, 0.4, 0.1);
         const double depth = pow(10.0, solids_uniform(-3.0, -1.0));
         size_t count = 0;
