@@ -1,6 +1,6 @@
 // prove_narrow.c -- the narrow phase against slow oracles in full: a table per dimension, a row per pair of shapes.
 //
-//     prove_narrow [pairs [trajectories [steps [every [searched [dimension]]]]]]        100000 200 400 1 1, both dimensions
+//     prove_narrow [pairs [trajectories [steps [every [searched [dimension]]]]]]        100000 200 400 5 11, both dimensions
 //
 // Exit status 1 when a depth is wrong, an answer is not finite or a solver failed.
 
@@ -26,42 +26,53 @@ static void add(narrow_tally *to, const narrow_tally *t)
     to->counts.failures += t->counts.failures;
 }
 
-static uint64_t row(int dimension, int a, int b, const int numbers[NUMBERS])
+typedef struct result
 {
-    narrow_tally cold = {0}, warm = {0}, both = {0};
-    narrow_random(dimension, a, b, numbers[0], numbers[4], 1, &cold);
-    narrow_tumble(dimension, a, b, numbers[1], numbers[2], numbers[3], numbers[4], 2, &warm);
-    add(&both, &cold), add(&both, &warm);
+    int a, b;
+    narrow_tally warm, both;
+} result;
+
+static void measure(int dimension, const int numbers[NUMBERS], result *r)
+{
+    narrow_random(dimension, r->a, r->b, numbers[0], numbers[4], 1, &r->both);
+    narrow_tumble(dimension, r->a, r->b, numbers[1], numbers[2], numbers[3], numbers[4], 2, &r->warm);
+    add(&r->both, &r->warm);
+}
+
+static uint64_t print(int dimension, const result *r)
+{
+    const narrow_tally *t = &r->both, *w = &r->warm;
+    const uint64_t wrong = t->wrong + t->not_finite;
     printf("| %s - %s | %llu | %llu | %.1e | %.1e | %.1e | %.1e | %llu | %llu | %llu | %.2f | %llu | %llu | %.0f |\n",
-           narrow_name(dimension, a), narrow_name(dimension, b), (unsigned long long)both.checked, (unsigned long long)both.searched,
-           both.depth, both.depth_relative, both.normal, both.points, (unsigned long long)both.above,
-           (unsigned long long)(both.wrong + both.not_finite), (unsigned long long)both.counts.failures,
-           (double)warm.counts.iterations / (double)warm.counts.queries, (unsigned long long)warm.counts.restarts,
-           (unsigned long long)warm.counts.fallbacks, warm.nanoseconds);
-    fflush(stdout);
-    return both.wrong + both.not_finite + both.counts.failures;
+           narrow_name(dimension, r->a), narrow_name(dimension, r->b), (unsigned long long)t->checked, (unsigned long long)t->searched,
+           t->depth, t->depth_relative, t->normal, t->points, (unsigned long long)t->above, (unsigned long long)wrong,
+           (unsigned long long)t->counts.failures, (double)w->counts.iterations / (double)w->counts.queries,
+           (unsigned long long)w->counts.restarts, (unsigned long long)w->counts.fallbacks, w->nanoseconds);
+    return wrong + t->counts.failures;
 }
 
 static uint64_t table(int dimension, const int numbers[NUMBERS])
 {
+    static result results[NARROW_MOST_SHAPES * (NARROW_MOST_SHAPES + 1) / 2];
+    int count = 0;
     uint64_t bad = 0;
+    for (int b = 0; narrow_shape(dimension, b); ++b) // makes the shapes, too
+        for (int a = 0; a <= b; ++a)
+            if (narrow_shape(dimension, b + 1) || a != b) results[count++] = (result){.a = a, .b = b}; // but plane on plane
+#pragma omp parallel for schedule(dynamic)
+    for (int k = count - 1; k >= 0; --k) measure(dimension, numbers, &results[k]); // the slow ones first
     printf(
         "\n%dD\n\n| pair | compared | searched | depth | of depth | normal | points | above | wrong | failures | iterations | restarts | "
         "fallbacks | ns |\n",
         dimension);
     printf("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
-    for (int b = 0; narrow_shape(dimension, b); ++b)
-        for (int a = 0; a <= b; ++a)
-        {
-            if (!narrow_shape(dimension, b + 1) && a == b) continue; // plane on plane
-            bad += row(dimension, a, b, numbers);
-        }
+    for (int k = 0; k < count; ++k) bad += print(dimension, &results[k]);
     return bad;
 }
 
 int main(int argc, char **argv)
 {
-    int numbers[NUMBERS] = {100000, 200, 400, 1, 1};
+    int numbers[NUMBERS] = {100000, 200, 400, 5, 11};
     for (int k = 1; k < argc && k <= NUMBERS; ++k) numbers[k - 1] = atoi(argv[k]);
     const int only = argc > NUMBERS + 1 ? atoi(argv[NUMBERS + 1]) : 0;
     uint64_t bad = 0;
