@@ -51,7 +51,7 @@ typedef struct pls_part_tree pls_part_tree;
 typedef struct pls_shape_input
 {
     const double *values;   ///< as the table of parameters says; null: all defaults
-    size_t value_count;     ///< of them; with fewer than the table has the shape is refused, more are not read
+    size_t value_count;     ///< of them; with fewer than the table has the shape is refused (INVALID_ARGUMENT), more are not read
     const pls_vec3 *points; ///< of the table's row of kind PLS_PARAMETER_POINTS, in 2D with z = 0
     size_t point_count;
     const char *path;            ///< of its row of kind PLS_PARAMETER_PATH; null: not given
@@ -83,7 +83,7 @@ typedef struct pls_shape_ops
     pls_vec3 (*gradient)(const pls_shape *shape, pls_vec3 X);
     bool (*is_convex)(const pls_shape *shape);
     /// Of a convex shape, where it costs much less than the distance: a convex function of X that is 0 on the surface and less inside, and its gradient. Pictures follow
-    /// rays by it.
+    /// rays by it; null: by the distance.
     double (*level)(const pls_shape *shape, pls_vec3 X, pls_vec3 *gradient);
     /// The point of a convex shape that lies furthest along n, a radius `margin` less.
     pls_vec3 (*support)(const pls_shape *shape, pls_vec3 n);

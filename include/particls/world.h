@@ -98,7 +98,7 @@ void pls_world_destroy(pls_world *world);
 
 /// @name Building
 /// All of these may also be called between steps. `values` holds the parameters of `ops` in order of its table; null: all defaults. For a shape `value_count` says
-/// how many there are; too few are refused.
+/// how many there are; too few are refused (INVALID_ARGUMENT).
 /// @{
 pls_status pls_world_add_shape(pls_world *world, const char *name, const pls_shape_ops *ops, const double *values, size_t value_count,
                                pls_shape_id *id);

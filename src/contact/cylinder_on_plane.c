@@ -8,6 +8,8 @@
 
 #include "contact/cylinder_on_plane.h"
 
+#include "contact/faces.h"
+#include "math/gauss.h"
 #include "shape/builtin.h"
 
 /// Moments of what lies below the plane, and of the cut itself.
@@ -71,8 +73,6 @@ static double angle_of(double versine)
 
 static moments moments_of(const cylinder *q)
 {
-    static const double node[4] = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674, 0.96028985649753623};
-    static const double node_weight[4] = {0.36268378337836198, 0.31370664587788729, 0.22238103445337447, 0.10122853629037626};
     const double R = q->radius, near_end = q->depth / (q->s * R), far_end = (q->depth - q->c * q->length) / (q->s * R);
     // Where the plane passes the lower and the upper corner of each end; beyond the first nothing is below.
     double end[5] = {0.0, angle_of(near_end), angle_of(far_end), angle_of(2.0 - near_end), angle_of(2.0 - far_end)};
@@ -90,8 +90,8 @@ static moments moments_of(const cylinder *q)
         if (!(half > 0.0)) continue;
         for (int k = 0; k < 8; ++k)
         {
-            const double phi = middle + (k % 2 ? half : -half) * node[k / 2], versine = 2.0 * sin(0.5 * phi) * sin(0.5 * phi);
-            const double weight = 2.0 * half * node_weight[k / 2] * R * cos(phi); // both sides of the middle
+            const double phi = middle + (k % 2 ? half : -half) * pls_gauss_node[k / 2], versine = 2.0 * sin(0.5 * phi) * sin(0.5 * phi);
+            const double weight = 2.0 * half * pls_gauss_weight[k / 2] * R * cos(phi); // both sides of the middle
             add_strip(&m, q, -R * (2.0 - versine), -R * versine, R * sin(phi), weight);
         }
     }
@@ -113,11 +113,11 @@ static depths depths_of(const cylinder *q, const moments *m)
     return d;
 }
 
-/// Mean distance from the middle by radius of gyration: of an evenly pressed disc, and of a line; what is between has moments between.
+/// What is between a disc and a line has moments between.
 static double lever_of(double small, double large)
 {
-    static const double of_disc = 0.94280904158206336, of_line = 0.86602540378443865;
-    return large > 0.0 ? (of_line + (of_disc - of_line) * small / large) * sqrt(small + large) : 0.0;
+    const double part = PLS_ARM_OF_LINE + (PLS_ARM_OF_DISC - PLS_ARM_OF_LINE) * small / large;
+    return large > 0.0 ? part * sqrt(small + large) : 0.0;
 }
 
 bool pls_cylinder_on_plane(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
@@ -126,6 +126,8 @@ bool pls_cylinder_on_plane(const pls_posed *a, const pls_posed *b, const pls_dep
     if (a->shape->ops != &pls_cylinder_shape || !b->shape->ops->unbounded || options->faces == PLS_FACES_POINT) return false;
     const double margin = a->shape->margin * a->scale, R = a->shape->values[0] * a->scale - margin,
                  length = a->shape->values[1] * a->scale - 2.0 * margin;
+    if (margin > R || 2.0 * margin > length)
+        return false; // so thin a core is soon below the plane as a whole, and then nothing pushes back: the point stands
     const pls_vec3 up = pls_posed_gradient(b, b->position), z_axis = pls_dot(a->z, up) < 0.0 ? a->z : pls_scale(a->z, -1.0);
     // Of a cylinder that stands nothing but rounding is left of the side it leans to: any will do.
     const pls_vec3 lean = pls_sub(pls_scale(z_axis, pls_dot(z_axis, up)), up), any = pls_dot(a->x, up) > 0.0 ? pls_scale(a->x, -1.0) : a->x;

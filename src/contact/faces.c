@@ -43,11 +43,6 @@ static const double blur = 2e-15;
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
 /// A triangle or segment of a wall: two faces back to back.
-static bool is_facet(const pls_shape *s)
-{
-    return s->convex && s->polytope && s->polytope->face_count == 2 && s->polytope->vertex_count == (uint32_t)s->dimension;
-}
-
 static bool has_faces(const pls_shape *s)
 {
     return s->convex && s->polytope && s->polytope->face_count > 2 && s->polytope->face_count <= PLS_MOST_FACES &&
@@ -191,17 +186,14 @@ static pls_vec3 middle_of_area(const pls_overlap_integrals *P, const pls_touch *
     const pls_vec3 area = P->area;
     const double square = pls_dot(area, area);
     if (!(square > 0.0)) return t->point;
-    const pls_vec3 middle = pls_scale(pls_cross(area, P->area_moment), 1.0 / square);
-    const pls_vec3 apart = pls_sub(middle, t->point);
-    return pls_add(t->point, pls_sub(apart, pls_scale(t->normal, pls_dot(apart, t->normal))));
+    return pls_in_plane_of_touch(t, pls_scale(pls_cross(area, P->area_moment), 1.0 / square));
 }
 
 /// Right for evenly pressed discs, whose mean distance from the middle it is (2/3 of their radius), and to half a percent for squares.
 static double lever_of(const pls_touch *t)
 {
-    static const double of_disc = 0.94280904158206336; ///< 2/3 of the radius over the radius of gyration
     const double *s = t->spread, all = s[0] + s[1] + s[2] - pls_dot(t->normal, second_along(s, t->normal));
-    return of_disc * sqrt(fmax(all, 0.0));
+    return PLS_ARM_OF_DISC * sqrt(fmax(all, 0.0));
 }
 
 /// Energy kn W / A0.
@@ -280,7 +272,7 @@ static void flatten(pls_overlap_integrals *P)
 
 static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
 {
-    const bool plane = b->shape->ops->unbounded, facet = is_facet(b->shape), flat = a->shape->dimension == 2;
+    const bool plane = b->shape->ops->unbounded, facet = pls_is_facet(b->shape), flat = a->shape->dimension == 2;
     pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
     double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS];
     pls_vec3 n = depth->normal;
@@ -355,7 +347,7 @@ void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4])
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
 {
     double half[3];
-    const bool plane = b->shape->ops->unbounded, wall = plane || is_facet(b->shape);
+    const bool plane = b->shape->ops->unbounded, wall = plane || pls_is_facet(b->shape);
     const bool faces = has_faces(a->shape) && (wall || (has_faces(b->shape) && a->shape->margin == 0.0 && b->shape->margin == 0.0));
     const bool cap = plane && options->faces == PLS_FACES_VOLUME && is_ellipsoid(a->shape, half);
     if (options->faces == PLS_FACES_POINT || (!faces && !cap)) return false;
@@ -366,7 +358,7 @@ bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
         else
             cap_law(a, half, pls_posed_gradient(b, b->position), b->position, options->face_area, out);
     }
-    else if ((depth->delta <= 0.0 && !is_facet(b->shape)) || !overlap_law(a, b, depth, options, out))
+    else if (depth->delta <= 0.0 || !overlap_law(a, b, depth, options, out))
         no_touch(depth, out);
     out->depth = depth->delta;
     return true;

@@ -20,6 +20,9 @@
 #include "contact/lines.h"
 
 #include "contact/faces.h"
+#include "math/gauss.h"
+
+static const double parallel = 1e-12; ///< sine of the angle below which a line keeps its distance from an edge
 
 /// Integrals over lines; `force` and `torque` are what pushes B.
 typedef struct push
@@ -138,7 +141,7 @@ static void keep_near(range *r, const line *l, const feature *f)
         along = pls_sub(along, pls_scale(f->direction, pls_dot(along, f->direction)));
     }
     const double a = pls_dot(along, along), b = pls_dot(from, along), most = l->reach * l->reach;
-    if (!(a > 1e-24)) // parallel to an edge
+    if (!(a > parallel * parallel * pls_dot(l->along, l->along)))
     {
         if (!(pls_dot(from, from) < most)) r->high = -INFINITY;
         return;
@@ -153,15 +156,14 @@ static void keep_near(range *r, const line *l, const feature *f)
 static void add_part(sums *sum, const line *l, const feature *f, range r)
 {
     static const double few[2] = {0.0, 0.77459666924148338}, few_weight[2] = {8.0 / 9.0, 5.0 / 9.0};
-    static const double many[4] = {0.18343464249564980, 0.52553240991632899, 0.79666647741362674, 0.96028985649753623};
-    static const double many_weight[4] = {0.36268378337836198, 0.31370664587788729, 0.22238103445337447, 0.10122853629037626};
     keep_near(&r, l, f);
     if (is_empty(r)) return;
     const double middle = 0.5 * (r.low + r.high), half = 0.5 * (r.high - r.low), metres = half * pls_length(l->along);
     const bool flat = f->freedom == 2;
     for (int k = flat ? 1 : 0; k < (flat ? 2 : 4); ++k)
         for (int side = -1; side <= 1; side += 2)
-            add_point(sum, l, f, middle + side * half * (flat ? few[k] : many[k]), metres * (flat ? few_weight[k] : many_weight[k]));
+            add_point(sum, l, f, middle + side * half * (flat ? few[k] : pls_gauss_node[k]),
+                      metres * (flat ? few_weight[k] : pls_gauss_weight[k]));
     if (flat) add_point(sum, l, f, middle, metres * few_weight[0]);
 }
 
@@ -331,10 +333,7 @@ static bool has_edges(const pls_shape *s)
            s->polytope->vertex_count <= 2 * PLS_MOST_FACES;
 }
 
-static bool is_wall(const pls_shape *s)
-{
-    return s->ops->unbounded || (s->polytope && s->polytope->face_count == 2 && s->polytope->vertex_count == (uint32_t)s->dimension);
-}
+static bool is_wall(const pls_shape *s) { return s->ops->unbounded || pls_is_facet(s); }
 
 static void add_edge(sums *sum, line *l, const pls_posed *own, pls_vec3 p, pls_vec3 q)
 {
@@ -383,19 +382,14 @@ static void add_edges(sums *sum, const pls_posed *own, const pls_posed *other, p
 
 // ---- the law ------------------------------------------------------------------------------------------------------------------------------------------------
 
-static double lever_of(const pls_touch *t)
-{
-    static const double of_line =
-        0.86602540378443865; ///< mean distance from the middle of an evenly pressed line over its radius of gyration
-    return of_line * sqrt(t->spread[0] + t->spread[1] + t->spread[2]);
-}
-
 static void line_law(const sums *sum, bool flat, pls_vec3 origin, pls_touch *out)
 {
     const double *W = sum->power, delta = W[3] / W[2];
     const pls_vec3 force = pls_scale(pls_sub(pls_scale(sum->by_t2.force, 3.0), pls_scale(sum->by_t.force, 2.0 * delta)), 1.0 / W[2]);
     const pls_vec3 torque = pls_scale(pls_sub(pls_scale(sum->by_t2.torque, 3.0), pls_scale(sum->by_t.torque, 2.0 * delta)), 1.0 / W[2]);
     const double square = pls_dot(force, force), length = sqrt(square);
+    out->delta = out->energy_delta = 0.0;
+    if (!(square > 0.0)) return; // so deep that pushes from all sides are even
     const pls_vec3 heavy = pls_scale(sum->first_t, 1.0 / W[1]), about = pls_sub(torque, pls_cross(heavy, force));
     out->normal = pls_scale(force, 1.0 / length);
     out->delta = delta * length;
@@ -410,10 +404,9 @@ static void line_law(const sums *sum, bool flat, pls_vec3 origin, pls_touch *out
                               heavy.x * heavy.y, heavy.x * heavy.z, heavy.y * heavy.z};
     for (int k = 0; k < 6; ++k) out->spread[k] = sum->second_t[k] / W[1] - middle[k];
     for (int k = 0; k < 3; ++k) out->spread[k] = fmax(out->spread[k], 0.0);
-    out->lever = flat ? 0.0 : lever_of(out);
+    out->lever = flat ? 0.0 : PLS_ARM_OF_LINE * sqrt(out->spread[0] + out->spread[1] + out->spread[2]);
     // As for areas friction acts in the middle of what touches, which does not wander when the load does (faces.c).
-    const pls_vec3 apart = pls_sub(pls_scale(sum->first, 1.0 / W[0]), out->point);
-    out->middle = flat ? out->point : pls_add(out->point, pls_sub(apart, pls_scale(out->normal, pls_dot(apart, out->normal))));
+    out->middle = flat ? out->point : pls_in_plane_of_touch(out, pls_scale(sum->first, 1.0 / W[0]));
     out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
 }
 

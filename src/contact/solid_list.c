@@ -186,20 +186,37 @@ static world_box box_of_wall(const pls_posed *wall)
     return box;
 }
 
-/// A wall may reach as far as the box repeats, so that it and its images are one; further, they would lie on each other. The thickness of its pieces may.
-static pls_status check_wall_fits(const pls_solid_source *s, uint32_t wall, const pls_posed *posed, const world_box *box)
+/// What the corners of its pieces reach over; `margins` of the pieces may lie on those of images.
+static void measure_wall(pls_solid_list *list, const pls_solid_source *s, uint32_t wall, const pls_posed *posed)
 {
-    const double fits = 1.0 + 1e-9, thickness = 2.0 * posed->scale * posed->shape->part[0].shape->margin;
-    for (int a = 0; a < s->domain->dimension; ++a)
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    if (!s->domain->any_periodic || (s->bodies->kind[wall].flags & PLS_BODY_SPECIAL)) return;
+    for (uint32_t k = 0; k < posed->shape->part_count; ++k)
     {
-        const double edge = s->domain->edge[a], length = box->upper[a] - box->lower[a] - thickness;
-        if (s->domain->periodic[a] && length > edge * fits)
+        const pls_shape_part *part = &posed->shape->part[k];
+        const pls_polytope *piece = part->shape->polytope;
+        for (uint32_t v = 0; v < piece->vertex_count; ++v)
+        {
+            const pls_vec3 X = pls_posed_world(posed, pls_part_to_whole(part, piece->vertex[v]));
+            const double x[3] = {X.x, X.y, X.z};
+            for (int a = 0; a < 3; ++a) low[a] = fmin(low[a], x[a]), high[a] = fmax(high[a], x[a]);
+        }
+    }
+    for (int a = 0; a < 3; ++a)
+        if (high[a] - low[a] > list->wall_length[a])
+            list->wall_length[a] = high[a] - low[a], list->longest_wall[a] = s->bodies->kind[wall].number;
+}
+
+pls_status pls_solid_walls_fit(const pls_solid_list *list, const pls_domain *domain)
+{
+    const double fits = 1.0 + 1e-9;
+    for (int a = 0; a < domain->dimension; ++a)
+        if (domain->periodic[a] && list->wall_length[a] > domain->edge[a] * fits)
             return pls_fail(
                 PLS_INVALID_ARGUMENT,
                 "the wall of pieces that is body %u is %g m long along %c, where the box repeats after %g m: it would lie on its "
                 "own image. Cut it to one period",
-                s->bodies->kind[wall].number, length, "xyz"[a], edge);
-    }
+                list->longest_wall[a], list->wall_length[a], "xyz"[a], domain -> edge[a]);
     return PLS_OK;
 }
 
@@ -242,7 +259,7 @@ static pls_status one_wall(pls_solid_list *list, const pls_solid_source *s, uint
     const pls_bodies *b = s->bodies;
     const pls_posed posed = posed_body(s, wall);
     const world_box box = box_of_wall(&posed);
-    PLS_TRY(check_wall_fits(s, wall, &posed, &box));
+    measure_wall(list, s, wall, &posed);
     for (uint32_t row = 0; row < b->count; ++row)
     {
         if ((b->kind[row].flags & PLS_BODY_UNBOUNDED) || !pls_pair_matters(b, row, wall)) continue;
@@ -278,6 +295,7 @@ static pls_status add_walls(pls_solid_list *list, const pls_solid_source *s)
 {
     part_numbers found = {0};
     pls_status status = PLS_OK;
+    for (int a = 0; a < 3; ++a) list->wall_length[a] = 0.0;
     for (uint32_t number = 0; status == PLS_OK && number < s->bodies->numbers; ++number)
     {
         uint32_t row = s->bodies->row_of[number];

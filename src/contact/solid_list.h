@@ -84,6 +84,8 @@ typedef struct pls_solid_list
     uint32_t *row; ///< rows that have candidates, ascending
     size_t row_count, row_capacity;
     pls_narrow_counts counts; ///< of all steps
+    double wall_length[3];    ///< of walls of pieces that cannot turn the longest along each axis, in a periodic box [m]
+    uint32_t longest_wall[3]; ///< the number of that body
 } pls_solid_list;
 
 /// Records taken out of a list, or read from a checkpoint. Zero-initialise; `pls_solid_records_free` releases.
@@ -111,8 +113,10 @@ static inline bool pls_pair_is_solid(const pls_bodies *bodies, uint32_t a, uint3
 }
 
 /// Make the list: all pairs of parts nearer than the gap and all that touch in `records`, with what `records` holds of them.
-/// NOT_FOUND names two materials without a law, INVALID_ARGUMENT a wall of pieces that is longer than a periodic edge.
+/// NOT_FOUND names two materials without a law.
 pls_status pls_solid_list_build(pls_solid_list *list, const pls_solid_source *source, const pls_solid_records *records);
+/// INVALID_ARGUMENT: a wall of pieces is longer than a periodic edge, so that it and its images lie on each other. One that may turn is not asked.
+pls_status pls_solid_walls_fit(const pls_solid_list *list, const pls_domain *domain);
 void pls_solid_list_free(pls_solid_list *list);
 size_t pls_solid_list_bytes(const pls_solid_list *list);
 /// Touching candidates now, shaded ones left out.

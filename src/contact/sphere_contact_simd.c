@@ -828,8 +828,9 @@ static bool whole_pays(const pls_pair_list *list, const pls_pair_block *block)
 void PLS_SIMD(pls_contact_block)(pls_pair_list *list, const pls_contact_input *in, const pls_pair_block *block, pls_contact_work *work)
 {
     const pls_pair_section *section = &list->section[block->section];
-    const pls_law_ops *ops = in->laws->law[section->law].ops;
-    if (ops->evaluate != pls_linear_evaluate || !whole_pays(list, block))
+    const pls_law *law = &in->laws->law[section->law];
+    const bool springs = law->ops->evaluate == pls_linear_evaluate && law->constants[PLS_LINEAR_KS] > 0.0;
+    if (!springs || !whole_pays(list, block))
         work_picked(list, in, section, block, work);
     else if (section->wall)
         work_whole_walls(list, in, section, block, work);

@@ -38,7 +38,7 @@ static double pass_at(const shadow_ray *r, double t, double phi)
     return phi < r->eps ? 0.0 : phi < wide ? phi / wide : 1.0;
 }
 
-/// What passes, where that is clear without distances: nothing or all. Else -1, and `from` is where the distance still falls. Each plane that a level set touches leaves the shape behind it: the ray goes from plane to plane
+/// What passes, where that is clear without distances: nothing or all. Else -1, and `from` is where the level still falls. Each plane that a level set touches leaves the shape behind it: the ray goes from plane to plane
 /// as it does to a body that is seen, and where it misses, it comes no closer than to where the last two planes cross.
 static double pass_clearly(const shadow_ray *r, double *from)
 {
@@ -74,6 +74,11 @@ static double pass_convex(const shadow_ray *r)
     {
         double slope, phi = shadow_descent(r, t, &slope);
         if (phi < r->eps) return 0.0;
+        if (slope >= 0.0 && slope_low == 0.0 && t > r->from) // distances rise before levels do: from the beginning
+        {
+            t = r->from;
+            continue;
+        }
         if (slope >= 0.0)
         {
             double high = t, slope_high = slope;

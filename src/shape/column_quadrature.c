@@ -10,6 +10,8 @@
 
 #include "shape/column_quadrature.h"
 
+#include "math/gauss.h"
+
 enum {
     MOST_CROSSINGS = 8,
     MOST_BREAKS = 24, ///< places at which a line is divided
@@ -128,8 +130,6 @@ static crossings find_crossings(const pls_column_frame *frame, const double x[3]
 /// Integrals of density, times z, times z^2, from a to b.
 static void piece(const block *c, double x[3], double a, double b, double line[3])
 {
-    static const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-    static const double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
     const pls_shape *shape = c->frame->shape;
     double middle = 0.5 * (a + b), half = 0.5 * (b - a);
     if (!shape->ops->density)
@@ -141,11 +141,11 @@ static void piece(const block *c, double x[3], double a, double b, double line[3
     }
     for (int k = 0; k < 8; ++k)
     {
-        double z = middle + (k & 1 ? half : -half) * node[k / 2];
+        double z = middle + (k & 1 ? half : -half) * pls_gauss_node[k / 2];
         x[c->up] = z;
         pls_vec3 X = c->frame->origin;
         for (int a3 = 0; a3 < 3; ++a3) X = pls_add(X, pls_scale(c->frame->axis[a3], x[a3]));
-        double mass = shape->ops->density(shape, X) * weight[k / 2] * half;
+        double mass = shape->ops->density(shape, X) * pls_gauss_weight[k / 2] * half;
         line[0] += mass, line[1] += mass * z, line[2] += mass * z * z;
     }
 }

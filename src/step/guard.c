@@ -116,5 +116,6 @@ static pls_status guard_lost(const pls_world *world)
 pls_status pls_guard_step(pls_world *world)
 {
     PLS_TRY(pls_guard_overlap(world));
+    PLS_TRY(pls_solid_walls_fit(&world->solids, &world->domain));
     return guard_lost(world);
 }

@@ -157,6 +157,7 @@ pls_status pls_world_prepare(pls_world *world)
     PLS_TRY(pls_states_apply(world));
     PLS_TRY(pls_special_start(world));
     PLS_TRY(pls_neighbours_refresh(world));
+    if (world->step == 0) PLS_TRY(pls_solid_walls_fit(&world->solids, &world->domain)); // later in the guard's steps, restarted or not
     PLS_TRY(pls_choose_step(world));
     stand_still(&world->bodies);
     bool begun;
