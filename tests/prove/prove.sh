@@ -92,7 +92,7 @@ Impacts start at many phases of the time grid, because a contact law has a kink,
 |---|---|
 | version | $(sed -n 's/^#define PLS_VERSION_TEXT *"\(.*\)"/\1/p' "$root/include/particls/types.h") |
 | processor | $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1) |
-| took | $((known - start)) s, the compression $((ended - known)) s, equal bits $((repeated - ended)) s |
+| took | $((known - start)) s, contacts and the compression $((ended - known)) s, equal bits $((repeated - ended)) s |
 
 $(tail -qn 1 "$scratch/tables.md" "$scratch/compression.md" | awk '{ all += $1; failed += $3 } END { print all " comparisons, " failed " out of tolerance." }')
 
