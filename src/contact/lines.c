@@ -382,15 +382,15 @@ static void add_edges(sums *sum, const pls_posed *own, const pls_posed *other, p
 
 // ---- the law ------------------------------------------------------------------------------------------------------------------------------------------------
 
-static void line_law(const sums *sum, bool flat, pls_vec3 origin, pls_touch *out)
+static void line_law(const sums *sum, bool flat, pls_vec3 origin, double size, pls_touch *out)
 {
     const double *W = sum->power, delta = W[3] / W[2];
     const pls_vec3 force = pls_scale(pls_sub(pls_scale(sum->by_t2.force, 3.0), pls_scale(sum->by_t.force, 2.0 * delta)), 1.0 / W[2]);
     const pls_vec3 torque = pls_scale(pls_sub(pls_scale(sum->by_t2.torque, 3.0), pls_scale(sum->by_t.torque, 2.0 * delta)), 1.0 / W[2]);
     const double square = pls_dot(force, force), length = sqrt(square);
-    out->delta = out->energy_delta = 0.0;
-    if (!(square > 0.0)) return; // so deep that pushes from all sides are even
     const pls_vec3 heavy = pls_scale(sum->first_t, 1.0 / W[1]), about = pls_sub(torque, pls_cross(heavy, force));
+    // Cores nearly in each other: pushes from all sides cancel, and what is left of them would act far away. The point stands.
+    if (!(pls_length(pls_cross(force, about)) < size * square)) return;
     out->normal = pls_scale(force, 1.0 / length);
     out->delta = delta * length;
     out->energy_delta = delta;
@@ -422,7 +422,7 @@ bool pls_lines_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
     if (!wall && (line_b || !line_a)) add_edges(&sum, b, a, pls_scale(depth->normal, -1.0), origin, 1.0);
     out->depth = depth->delta;
     if (sum.power[3] > 0.0)
-        line_law(&sum, a->shape->dimension == 2, origin, out);
+        line_law(&sum, a->shape->dimension == 2, origin, fmin(a->size, b->size), out);
     else
         out->delta = fmin(depth->delta, 0.0);
     return true;

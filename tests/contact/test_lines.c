@@ -403,9 +403,29 @@ static void deep_overlaps_are_gradients_too(void **state)
     assert_near(worst, 0.0, 1e-4);
 }
 
+/// Where axes nearly cross next to nothing is left of a line's force, which with its couple would act far away: the deepest point stands.
+static void nothing_acts_far_away(void **state)
+{
+    (void)state;
+    pls_shape *c = capsule(2, 0.1, 0.5), *wire = capsule(2, 0.001, 2.0);
+    const pls_posed a = at(c, pls_vec(0, 0, 0), pls_quat_identity());
+    int points = 0;
+    for (int k = 0; k < 600; ++k)
+    {
+        const double angle = 0.1 * (1 + k % 31), off = 0.1 * (k % 7 - 3), aside = 0.0001 * k;
+        const pls_posed b = at(wire, pls_vec(aside, off, 0.0), (pls_quat){cos(0.5 * angle), 0.0, 0.0, sin(0.5 * angle)});
+        const pls_touch t = touch_of(&a, &b), p = touch_by(&a, &b, PLS_FACES_POINT);
+        assert_true(isfinite(t.delta) && isfinite(t.weight) && pls_length(t.point) < 1.0);
+        points += t.delta > 0.0 && t.delta == p.delta;
+    }
+    if (points == 0 || points > 500) fail_msg("%d of 600 at a point", points);
+    pls_shape_free(c), pls_shape_free(wire);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_acts_far_away),
         cmocka_unit_test(a_capsule_on_a_plane),
         cmocka_unit_test(lines_that_lie_on_lines_and_faces),
         cmocka_unit_test(a_cylinder_lies_and_stands),
