@@ -80,13 +80,7 @@ static void keep_below(range *r, const line *l, pls_vec3 normal, pls_vec3 point,
 
 static void keep_above(range *r, const line *l, pls_vec3 normal, pls_vec3 point, bool border)
 {
-    const double height = pls_dot(pls_sub(l->start, point), normal), slope = pls_dot(l->along, normal);
-    if (slope > 0.0)
-        r->low = fmax(r->low, -height / slope);
-    else if (slope < 0.0)
-        r->high = fmin(r->high, -height / slope);
-    else if (!(border ? height >= 0.0 : height > 0.0))
-        r->high = -INFINITY;
+    keep_below(r, l, pls_scale(normal, -1.0), point, border);
 }
 
 static bool is_empty(range r) { return !(r.high > r.low); }
