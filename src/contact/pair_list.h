@@ -18,6 +18,7 @@
 enum {
     PLS_CONTACT_BLOCK = PLS_LAW_BATCH,       ///< candidates per block of work: its arrays stay in the first-level cache
     PLS_PAIR_REACH = PLS_CONTACT_BLOCK + 64, ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
+    PLS_FETCH_REACH = PLS_CONTACT_BLOCK / 8, ///< readable entries behind the last row to be fetched
     PLS_LARGE_WORLD = 4000,                  ///< bodies from which rows overflow the near caches, so that fetching ahead pays
     PLS_VAST_WORLD = 30000,                  ///< bodies from which they overflow the last cache too
     PLS_ROW_GROUP = 8,                       ///< rows that are finished together
@@ -67,6 +68,9 @@ typedef struct pls_pair_list
     uint32_t *group_first, *group_last; ///< first and last block with pairs of the PLS_ROW_GROUP rows of a group; none: UINT32_MAX and 0
     uint32_t *group_waiting; ///< of the step: groups that must wait for contacts of another thread; each thread's from its first group on
     size_t group_capacity;
+    uint32_t *fetch_start,
+        *fetch_row; ///< per block of pairs what is to be fetched for it: rows that blocks shortly before it have not used
+    size_t fetch_start_capacity, fetch_row_capacity;
 
     size_t count;      ///< candidates, fill included
     size_t wall_first; ///< first wall candidate

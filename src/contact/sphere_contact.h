@@ -23,8 +23,8 @@ typedef struct pls_contact_work
     _Alignas(64) double damping_power[PLS_WORK_STRIDE];    ///< [W]
     _Alignas(64) double slip_work[PLS_WORK_STRIDE];        ///< [J]
     // of whole vectors
-    _Alignas(64) double factor[PLS_WORK_STRIDE]; ///< of the trial shear force; first its square [N^2]
-    _Alignas(64) double cone[PLS_WORK_STRIDE];   ///< largest shear force [N]
+    _Alignas(64) double square[PLS_WORK_STRIDE]; ///< of the trial shear force [N^2]
+    _Alignas(64) double cone[PLS_WORK_STRIDE];   ///< largest shear force [N]; then what the trial is multiplied by
     // of sphere pairs
     _Alignas(64) double distance[PLS_WORK_STRIDE];     ///< of the centres [m]
     _Alignas(64) double inv_distance[PLS_WORK_STRIDE]; ///< [1/m]

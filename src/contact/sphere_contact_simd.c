@@ -77,19 +77,6 @@ static inline unsigned valid_lanes(const pls_pair_block *block, size_t k)
     return block->count - k >= 8 ? 0xffu : (1u << (block->count - k)) - 1;
 }
 
-/// x = y cross z, three columns each.
-static inline __attribute__((always_inline)) void cross(pls_vd x[3], const pls_vd y[3], const pls_vd z[3])
-{
-    x[0] = y[1] * z[2] - y[2] * z[1];
-    x[1] = y[2] * z[0] - y[0] * z[2];
-    x[2] = y[0] * z[1] - y[1] * z[0];
-}
-
-static inline __attribute__((always_inline)) pls_vd dot(const pls_vd x[3], const pls_vd y[3])
-{
-    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-}
-
 // ---- which touch ----------------------------------------------------------------------------------------------------------------------------------------
 
 /// Contacts begin or end, seldom: rows that list touching contacts are stale, and what begins remembers nothing.
@@ -160,7 +147,7 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
             }
             pls_vd d[4];
             pls_columns4(row, d);
-            now |= pls_vd_less(dot(d, d), d[3] * d[3]) << half;
+            now |= pls_vd_less(pls_vd_dot(d, d), d[3] * d[3]) << half;
         }
         pick_touching(list, section, c, now & valid_lanes(block, k), work);
     }
@@ -182,22 +169,22 @@ static inline __attribute__((always_inline)) void fetch_slots(const pls_pair_lis
         now ? __builtin_prefetch(slot + lane * PLS_SLOT, 1) : __builtin_prefetch(slot + lane * PLS_SLOT);
 }
 
-/// Bodies of candidates c .. ; the lower row comes many times in turn and is there already.
-static inline __attribute__((always_inline)) void fetch_bodies(const pls_pair_list *list, const pls_contact_input *in, size_t c)
+/// A turn's part of the bodies that the next block needs.
+static inline __attribute__((always_inline)) void fetch_bodies(const pls_contact_input *in, const uint32_t *row, size_t count)
 {
-    const uint32_t *i = list->row_i + c, *j = list->row_j + c;
-    uint32_t upper[PLS_W]; // of all lanes at once
-#pragma GCC ivdep
-    for (int lane = 0; lane < PLS_W; ++lane) upper[lane] = i[lane] > j[lane] ? i[lane] : j[lane];
-#pragma GCC unroll 8
-    for (int lane = 0; lane < PLS_W; ++lane)
+    for (size_t k = 0; k < count; ++k)
     {
-        __builtin_prefetch(&in->place[upper[lane]]);
-        __builtin_prefetch(&in->spin[upper[lane]]);
+        __builtin_prefetch(&in->place[row[k]]);
+        __builtin_prefetch(&in->spin[row[k]]);
     }
-    for (int lane = 0; in->vast && lane < PLS_W; lane += 4) // what the end of the step needs of the lower ones, into the second-level cache
+}
+
+/// What the end of the step needs of the lower bodies of candidates c .. , into the second-level cache.
+static inline __attribute__((always_inline)) void fetch_ends(const pls_pair_list *list, const pls_contact_input *in, size_t c)
+{
+    for (size_t k = c; k < c + 8; k += 4)
     {
-        uint32_t lower = i[lane] < j[lane] ? i[lane] : j[lane];
+        uint32_t lower = pls_pair_lower_row(list, k);
         __builtin_prefetch(&in->load[lower], 0, 2);
         __builtin_prefetch(&in->before[lower], 0, 2);
         __builtin_prefetch(&in->orientation[lower], 0, 2);
@@ -256,7 +243,7 @@ static inline __attribute__((always_inline)) void load_lanes(const pls_pair_list
 static inline __attribute__((always_inline)) unsigned measure_lanes(pls_contact_work *work, size_t m, double both_radii, int plain)
 {
     const pls_vd d[3] = {pls_vd_load(&work->normal[0][m]), pls_vd_load(&work->normal[1][m]), pls_vd_load(&work->normal[2][m])};
-    pls_vd radii = plain ? pls_vd_set(both_radii) : pls_vd_load(&work->delta[m]), square = dot(d, d), distance = pls_vd_sqrt(square),
+    pls_vd radii = plain ? pls_vd_set(both_radii) : pls_vd_load(&work->delta[m]), square = pls_vd_dot(d, d), distance = pls_vd_sqrt(square),
            inv = 1.0 / distance;
     for (int a = 0; a < 3; ++a) pls_vd_store(&work->normal[a][m], d[a] * inv);
     pls_vd_store(&work->delta[m], radii - distance);
@@ -270,22 +257,27 @@ static inline __attribute__((always_inline)) unsigned measure_lanes(pls_contact_
 /// 1 where velocities are those of the surface points, 0 where they are those of the contact point.
 static inline double surface_of(const pls_law *law) { return law->lever_at_surface ? 1.0 : 0.0; }
 
+/// Cosine and sine of the angle by which a contact turns in a step, far less than a radian: series.
+static inline __attribute__((always_inline)) void turn_of(pls_vd angle, pls_vd *cosine, pls_vd *sine)
+{
+    const pls_vd square = angle * angle, one = pls_vd_set(1.0);
+    *cosine = pls_vd_less_product(square, pls_vd_less_product(square, pls_vd_set(1.0 / 24.0), pls_vd_set(0.5)), one);
+    *sine = angle * pls_vd_less_product(square, pls_vd_less_product(square, pls_vd_set(1.0 / 120.0), pls_vd_set(1.0 / 6.0)), one);
+}
+
 /// Carry a spring along with the contact frame, whose normal comes to n from n - 2 tilt in the step while the frame turns by `angle` about it, and add the step's
 /// displacement. The rotation that takes the old normal to n takes s, at right angles to the old one, to s - (s . n) (n - tilt) up to fourth order.
 static inline __attribute__((always_inline)) void carry_spring(pls_vd spring[3], const pls_vd n[3], const pls_vd tilt[3], pls_vd angle,
                                                                const pls_vd step[3])
 {
-    pls_vd turning[3], turned[3], t[3], sn = dot(spring, n), square = angle * angle, ahead = 0.5 * angle;
-    // A contact turns by far less than a radian in a step: series.
-    pls_vd cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0));
-    pls_vd sine = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)));
+    pls_vd turning[3], t[3], sn = pls_vd_dot(spring, n), ahead = 0.5 * angle, cosine, sine;
+    turn_of(angle, &cosine, &sine);
     for (int a = 0; a < 3; ++a)
     {
-        t[a] = spring[a] - sn * (n[a] - tilt[a]);
-        turning[a] = sine * t[a] + ahead * step[a];
+        t[a] = pls_vd_less_product(sn, n[a] - tilt[a], spring[a]);
+        turning[a] = pls_vd_fma(sine, t[a], ahead * step[a]);
     }
-    cross(turned, n, turning);
-    for (int a = 0; a < 3; ++a) spring[a] = cosine * t[a] + step[a] + turned[a];
+    for (int a = 0; a < 3; ++a) spring[a] = pls_vd_cross_plus(n, turning, a, pls_vd_fma(cosine, t[a], step[a]));
 }
 
 /// A contact that began in this step: its spring has had the time since touch only. Seldom.
@@ -317,7 +309,7 @@ static inline __attribute__((always_inline)) void carry_lanes(const pls_pair_lis
 {
     const int growing = !plain && in->growing, skewed = !plain && !list->equal_radii;
     const double dt = in->dt, half_dt = 0.5 * dt;
-    pls_vd n[3], end[3], arm[3], slip[3], q[3], sum[3], s[3], distance = pls_vd_load(&work->distance[m]);
+    pls_vd n[3], end[3], arm[3], q[3], sum[3], s[3], distance = pls_vd_load(&work->distance[m]);
     for (int a = 0; a < 3; ++a)
     {
         n[a] = pls_vd_load(&work->normal[a][m]);
@@ -326,9 +318,9 @@ static inline __attribute__((always_inline)) void carry_lanes(const pls_pair_lis
         sum[a] = pls_vd_load(&work->spin[a][m]);
         s[a] = pls_vd_load(spring + (size_t)a * stride);
     }
-    pls_vd qn = dot(q, n), spin = dot(sum, n), sn = dot(s, n), en = dot(end, n);
+    pls_vd qn = pls_vd_dot(q, n), spin = pls_vd_dot(sum, n), sn = pls_vd_dot(s, n), en = pls_vd_dot(end, n);
     pls_vd ratio = half_dt * pls_vd_load(&work->inv_distance[m]), less = ratio * qn;
-    pls_vd lever = 0.5 * distance, reach = half_dt * (distance - half_dt * qn);
+    pls_vd lever = 0.5 * distance, reach = half_dt * pls_vd_less_product(pls_vd_set(half_dt), qn, distance);
     if (surface != 0.0)
     {
         lever = 0.5 * (distance + pls_vd_load(&work->delta[m]));
@@ -341,30 +333,26 @@ static inline __attribute__((always_inline)) void carry_lanes(const pls_pair_lis
         arm[a] = lever * pls_vd_load(&work->spin_end[a][m]);
         if (skewed) arm[a] = arm[a] + pls_vd_load(&work->skew_end[a][m]);
     }
-    cross(slip, arm, n);
-    for (int a = 0; a < 3; ++a)
-    {
-        slip[a] = slip[a] - (end[a] - en * n[a]);
-        pls_vd_store(&work->slip_velocity[a][m], slip[a]);
-    }
+    for (int a = 0; a < 3; ++a) pls_vd_store(&work->slip_velocity[a][m], pls_vd_fma(en, n[a], pls_vd_cross_plus(arm, n, a, -end[a])));
     pls_vd_store(&work->normal_velocity[m], -en);
 
-    pls_vd angle = half_dt * spin, half = (0.5 * half_dt) * spin, square = angle * angle; // far less than a radian: series
-    pls_vd cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0));
-    pls_vd sine = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)));
-    pls_vd drift = dt + dt * less, lean = sn * (ratio * (1.0 + (less + less)));
-    pls_vd turning[3], turned[3], g[3];
+    pls_vd angle = half_dt * spin, half = (0.5 * half_dt) * spin, cosine, sine;
+    turn_of(angle, &cosine, &sine);
+    pls_vd drift = pls_vd_fma(pls_vd_set(dt), less, pls_vd_set(dt)), lean = sn * pls_vd_fma(ratio + ratio, less, ratio);
+    pls_vd turning[3], g[3];
     for (int a = 0; a < 3; ++a)
     {
         g[a] = reach * sum[a];
-        if (skewed) g[a] = g[a] + dt * pls_vd_load(&work->skew[a][m]);
+        if (skewed) g[a] = pls_vd_fma(pls_vd_set(dt), pls_vd_load(&work->skew[a][m]), g[a]);
     }
-    pls_vd gn = skewed ? dot(g, n) : reach * spin, lift = ratio * gn;
-    pls_vd along = lean * cosine + (lift * half - drift), across = lean * sine - (lift + drift * half);
-    pls_vd normal = cosine * sn + (along * qn + half * gn);
-    for (int a = 0; a < 3; ++a) turning[a] = sine * s[a] + (across * q[a] - g[a]);
-    cross(turned, n, turning);
-    for (int a = 0; a < 3; ++a) s[a] = (cosine * s[a] + (along * q[a] + half * g[a])) + (turned[a] - normal * n[a]);
+    pls_vd gn = skewed ? pls_vd_dot(g, n) : reach * spin, lift = ratio * gn;
+    pls_vd along = pls_vd_fma(lean, cosine, pls_vd_product_less(lift, half, drift)),
+           across = pls_vd_product_less(lean, sine, pls_vd_fma(drift, half, lift));
+    pls_vd normal = pls_vd_fma(cosine, sn, pls_vd_fma(along, qn, half * gn));
+    for (int a = 0; a < 3; ++a) turning[a] = pls_vd_fma(sine, s[a], pls_vd_product_less(across, q[a], g[a]));
+    for (int a = 0; a < 3; ++a)
+        s[a] = pls_vd_cross_plus(n, turning, a,
+                                 pls_vd_fma(cosine, s[a], pls_vd_fma(along, q[a], pls_vd_product_less(half, g[a], normal * n[a]))));
     if (fresh) begin_springs(work, m, dt, fresh, s, s);
     for (int a = 0; a < 3; ++a) pls_vd_store(&work->spring[a][m], s[a]);
 }
@@ -414,13 +402,12 @@ static inline int lanes_left(const pls_contact_work *work, size_t k)
 static inline __attribute__((always_inline)) void store_lanes(const pls_contact_work *work, size_t k, const pls_vd shear[3],
                                                               pls_vd slip_work, double *const *row, int lanes)
 {
-    pls_vd n[3], torque[3], column[8], half = 0.5 * pls_vd_load(&work->distance[k]), normal = pls_vd_load(&work->normal_force[k]);
-    for (int a = 0; a < 3; ++a) n[a] = pls_vd_load(&work->normal[a][k]);
-    cross(torque, n, shear);
+    pls_vd n[3], lever[3], column[8], half = 0.5 * pls_vd_load(&work->distance[k]), normal = pls_vd_load(&work->normal_force[k]);
+    for (int a = 0; a < 3; ++a) n[a] = pls_vd_load(&work->normal[a][k]), lever[a] = half * n[a];
     for (int a = 0; a < 3; ++a)
     {
-        column[a] = shear[a] - normal * n[a];
-        column[4 + a] = half * torque[a];
+        column[a] = pls_vd_less_product(normal, n[a], shear[a]);
+        column[4 + a] = pls_vd_cross(lever, shear, a);
     }
     column[3] = pls_vd_load(&work->damping_power[k]);
     column[7] = slip_work;
@@ -446,13 +433,13 @@ static inline __attribute__((always_inline)) void try_lanes(const pls_linear_val
     for (int a = 0; a < 3; ++a) pls_vd_store(&work->shear_force[a][m], t.shear[a]);
     pls_vd_store(&work->normal_force[m], t.normal_force);
     pls_vd_store(&work->damping_power[m], t.damping_power);
-    pls_vd_store(&work->factor[m], t.shear_square);
+    pls_vd_store(&work->square[m], t.shear_square);
     pls_vd_store(&work->cone[m], t.cone);
 }
 
 static inline __attribute__((always_inline)) void factor_lanes(pls_contact_work *work, size_t m)
 {
-    pls_vd_store(&work->factor[m], pls_linear_factor(pls_vd_load(&work->factor[m]), pls_vd_load(&work->cone[m])));
+    pls_vd_store(&work->cone[m], pls_linear_factor(pls_vd_load(&work->square[m]), pls_vd_load(&work->cone[m])));
 }
 
 /// Last part: sliding; springs of lanes that touch go back to their history. Gives the shear force on i, returns the work of sliding.
@@ -466,8 +453,8 @@ static inline __attribute__((always_inline)) pls_vd settle_lanes(const pls_linea
         spring[a] = pls_vd_load(&work->spring[a][m]);
         shear[a] = pls_vd_load(&work->shear_force[a][m]);
     }
-    pls_vd slip_work = pls_linear_settle(law, pls_vd_load(&work->factor[m]), v, shear, spring);
-    for (int a = 0; a < 3; ++a) pls_vd_store(history + 8 * a, pls_vd_choose(touching, spring[a], pls_vd_load(history + 8 * a)));
+    pls_vd slip_work = pls_linear_settle(law, pls_vd_load(&work->cone[m]), pls_vd_load(&work->square[m]), v, shear, spring);
+    for (int a = 0; a < 3; ++a) pls_vd_store_where(touching, history + 8 * a, spring[a]);
     return slip_work;
 }
 
@@ -592,9 +579,9 @@ static inline __attribute__((always_inline)) void frame_walls(const pls_pair_lis
         int b = (a + 1) % 3, c = (a + 2) % 3;
         u[a] = d[4 + a] + old_lever * (w[b] * n[c] - w[c] * n[b]) - (wall->velocity[0][a] + (ww[b] * old_arm[c] - ww[c] * old_arm[b]));
     }
-    pls_vd vn = dot(v, now), along = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
+    pls_vd vn = pls_vd_dot(v, now), along = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
     for (int a = 0; a < 3; ++a) u[a] = u[a] - along * n[a];
-    pls_vd un = dot(u, now); // small: the frame has turned since
+    pls_vd un = pls_vd_dot(u, now); // small: the frame has turned since
     pls_vd step[3], spring[3], tilt[3];
     for (int a = 0; a < 3; ++a)
     {
@@ -743,6 +730,9 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
     // Copies that no store of a byte can change, as far as compilers know.
     const pls_pair_list pairs = *list;
     const pls_contact_input input = *in;
+    const size_t next = (size_t)(block - pairs.block) + 1, turns = PLS_CONTACT_BLOCK / 8;
+    const uint32_t *coming = pairs.fetch_row + pairs.fetch_start[next];
+    const size_t per_turn = input.large ? (pairs.fetch_start[next + 1] - pairs.fetch_start[next] + turns - 1) / turns : 0;
     double *old = pls_pair_history(&pairs, section, first), *kept = old, *slot = pairs.slot + first * PLS_SLOT;
     for (size_t turn = 0; turn < count + SETTLE; turn += 8)
     {
@@ -769,10 +759,12 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
         k = turn - CARRY, m = k % RING;
         if (k < count)
         {
+            fetch_bodies(&input, coming, per_turn);
+            coming += per_turn;
+            if (input.vast) fetch_ends(&pairs, &input, first + k + PLS_CONTACT_BLOCK);
 #pragma GCC unroll 2
             for (size_t v = 0; v < 8; v += PLS_W)
             {
-                if (input.large) fetch_bodies(&pairs, &input, first + k + v + PLS_CONTACT_BLOCK);
                 carry_lanes(&pairs, &input, surface, old + v, 8, fresh_lanes(work, k + v), m + v, work, plain);
             }
             old += onwards;

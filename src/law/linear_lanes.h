@@ -15,14 +15,22 @@
 /// The constants by value, so that compilers keep them in registers.
 typedef struct pls_linear_values
 {
-    double kn, ks, cn, cs, mu, minus_inv_ks, floor_force, half_ks, dt;
+    double kn, ks, cn, cs, mu, inv_ks, twice_inv_ks, floor_force;
+    double slide; ///< 2 cs/ks + dt; without a spring 0
 } pls_linear_values;
 
 static inline pls_linear_values pls_linear_take(const double *constants, double dt)
 {
-    return (pls_linear_values){constants[PLS_LINEAR_KN],    constants[PLS_LINEAR_KS],       constants[PLS_LINEAR_CN],
-                               constants[PLS_LINEAR_CS],    constants[PLS_LINEAR_MU],       -constants[PLS_LINEAR_INV_KS],
-                               constants[PLS_LINEAR_FLOOR], 0.5 * constants[PLS_LINEAR_KS], dt};
+    const double ks = constants[PLS_LINEAR_KS], cs = constants[PLS_LINEAR_CS], inv_ks = constants[PLS_LINEAR_INV_KS];
+    return (pls_linear_values){.kn = constants[PLS_LINEAR_KN],
+                               .ks = ks,
+                               .cn = constants[PLS_LINEAR_CN],
+                               .cs = cs,
+                               .mu = constants[PLS_LINEAR_MU],
+                               .inv_ks = inv_ks,
+                               .twice_inv_ks = 2.0 * inv_ks,
+                               .floor_force = constants[PLS_LINEAR_FLOOR],
+                               .slide = ks > 0.0 ? 2.0 * cs * inv_ks + dt : 0.0};
 }
 
 /// The contacts had they not slid.
@@ -40,15 +48,15 @@ static inline __attribute__((always_inline)) void pls_linear_try(const pls_linea
                                                                  const pls_vd s[3], pls_linear_trial *out)
 {
     pls_vd spring_force = law->kn * delta, dash[3];
-    out->normal_force = pls_vd_max(spring_force + law->cn * vn, pls_vd_set(law->floor_force));
+    out->normal_force = pls_vd_max(pls_vd_fma(pls_vd_set(law->cn), vn, spring_force), pls_vd_set(law->floor_force));
     out->cone = law->mu * out->normal_force;
     for (int a = 0; a < 3; ++a)
     {
         dash[a] = law->cs * v[a];
-        out->shear[a] = law->ks * s[a] + dash[a];
+        out->shear[a] = pls_vd_fma(pls_vd_set(law->ks), s[a], dash[a]);
     }
-    out->shear_square = out->shear[0] * out->shear[0] + out->shear[1] * out->shear[1] + out->shear[2] * out->shear[2];
-    out->damping_power = (out->normal_force - spring_force) * vn + (dash[0] * v[0] + dash[1] * v[1] + dash[2] * v[2]);
+    out->shear_square = pls_vd_dot(out->shear, out->shear);
+    out->damping_power = pls_vd_fma(out->normal_force - spring_force, vn, pls_vd_dot(dash, v));
 }
 
 /// What the trial is multiplied by: -1 where nothing slides. The root and the division take long and hardly any units.
@@ -58,20 +66,22 @@ static inline __attribute__((always_inline)) pls_vd pls_linear_factor(pls_vd she
     return pls_vd_choose(slides, pls_vd_min(cone, -cone) / pls_vd_sqrt(shear_square), pls_vd_set(-1.0));
 }
 
-/// Shear force on i from the trial, the spring that is left, and the work of sliding [J].
-static inline __attribute__((always_inline)) pls_vd pls_linear_settle(const pls_linear_values *law, pls_vd factor, const pls_vd v[3],
-                                                                      pls_vd shear[3], pls_vd s[3])
+/// Shear force on i from the trial t (with its square), the spring that is left, and the work of sliding [J].
+///
+/// A share h of the trial is cut off (none, exactly, where nothing slides), and with it h/ks t of the spring. In terms of the trial ks s + cs v the work
+/// ks/2 (s_left + s - dt v) . (s - s_left) is h/2 ((2 - h)/ks t . t - (2 cs/ks + dt) v . t).
+static inline __attribute__((always_inline)) pls_vd pls_linear_settle(const pls_linear_values *law, pls_vd factor, pls_vd square,
+                                                                      const pls_vd v[3], pls_vd shear[3], pls_vd s[3])
 {
-    const pls_vm slides = pls_vm_less(pls_vd_set(-1.0), factor);
-    pls_vd work[3];
+    const pls_vd cut = 1.0 + factor, shorter = cut * law->inv_ks, vt = law->slide * pls_vd_dot(v, shear);
+    const pls_vd work =
+        (0.5 * cut) * pls_vd_product_less(square, pls_vd_less_product(cut, pls_vd_set(law->inv_ks), pls_vd_set(law->twice_inv_ks)), vt);
     for (int a = 0; a < 3; ++a)
     {
+        s[a] = pls_vd_less_product(shorter, shear[a], s[a]);
         shear[a] = shear[a] * factor;
-        pls_vd left = pls_vd_choose(slides, (shear[a] + law->cs * v[a]) * law->minus_inv_ks, s[a]);
-        work[a] = (left + s[a] - law->dt * v[a]) * (s[a] - left);
-        s[a] = left;
     }
-    return law->half_ks * (work[0] + work[1] + work[2]);
+    return work;
 }
 
 #endif

@@ -18,7 +18,8 @@ void PLS_SIMD(pls_linear_law)(const pls_law_batch *b)
         pls_vd s[3] = {pls_vd_load(b->spring_x + k), pls_vd_load(b->spring_y + k), pls_vd_load(b->spring_z + k)};
         pls_linear_trial t;
         pls_linear_try(&law, pls_vd_load(b->delta + k), pls_vd_load(b->normal_velocity + k), v, s, &t);
-        const pls_vd factor = pls_linear_factor(t.shear_square, t.cone), work = pls_linear_settle(&law, factor, v, t.shear, s);
+        const pls_vd factor = pls_linear_factor(t.shear_square, t.cone),
+                     work = pls_linear_settle(&law, factor, t.shear_square, v, t.shear, s);
         if (law.ks == 0.0) t.damping_power = t.damping_power + cut_of_dashpot(&law, factor, v, t.shear);
         pls_vd_store(b->slip_work + k, work);
         pls_vd_store(b->normal_force + k, t.normal_force);

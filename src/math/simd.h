@@ -43,6 +43,10 @@ const char *pls_isa_name(void);
 #define PLS_W 2
 #endif
 
+#if PLS_W == 2 && defined(__SSE2__) && !defined(__FMA__)
+#include "math/fma_emulated.h"
+#endif
+
 typedef double pls_vd __attribute__((vector_size(8 * PLS_W)));  ///< PLS_W doubles
 typedef int64_t pls_vi __attribute__((vector_size(8 * PLS_W))); ///< masks and bit patterns of pls_vd
 typedef double pls_v4 __attribute__((vector_size(32)));         ///< half a body row: three components and one more
@@ -87,6 +91,45 @@ static inline unsigned pls_vd_less(pls_vd a, pls_vd b)
     return bits;
 }
 #endif
+
+/// a b + c, rounded once. Asked for by name, since compilers that contract as they please give other bits on each instruction set. Processors without such an
+/// instruction (x86-64-v2) emulate it: the same bits, slowly.
+static inline pls_vd pls_vd_fma(pls_vd a, pls_vd b, pls_vd c)
+{
+#if defined(__AVX512F__)
+    return (pls_vd)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#elif defined(__AVX2__)
+    return (pls_vd)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+#elif defined(__SSE2__) && !defined(__FMA__)
+    return pls_fma_emulated(a, b, c);
+#else
+    pls_vd out = c;
+    for (int k = 0; k < PLS_W; ++k) out[k] = fma(a[k], b[k], c[k]);
+    return out;
+#endif
+}
+/// c - a b, rounded once.
+static inline pls_vd pls_vd_less_product(pls_vd a, pls_vd b, pls_vd c) { return pls_vd_fma(-a, b, c); }
+/// a b - c, rounded once.
+static inline pls_vd pls_vd_product_less(pls_vd a, pls_vd b, pls_vd c) { return pls_vd_fma(a, b, -c); }
+
+/// x . y of three columns each.
+static inline __attribute__((always_inline)) pls_vd pls_vd_dot(const pls_vd x[3], const pls_vd y[3])
+{
+    return pls_vd_fma(x[2], y[2], pls_vd_fma(x[1], y[1], x[0] * y[0]));
+}
+/// (y cross z) + c, component a of three columns each.
+static inline __attribute__((always_inline)) pls_vd pls_vd_cross_plus(const pls_vd y[3], const pls_vd z[3], int a, pls_vd c)
+{
+    const int b = (a + 1) % 3, d = (a + 2) % 3;
+    return pls_vd_fma(y[b], z[d], pls_vd_less_product(y[d], z[b], c));
+}
+/// y cross z, component a.
+static inline __attribute__((always_inline)) pls_vd pls_vd_cross(const pls_vd y[3], const pls_vd z[3], int a)
+{
+    const int b = (a + 1) % 3, d = (a + 2) % 3;
+    return pls_vd_product_less(y[b], z[d], y[d] * z[b]);
+}
 
 /// a > b ? a : b
 static inline pls_vd pls_vd_max(pls_vd a, pls_vd b)
@@ -156,6 +199,16 @@ static inline pls_vd pls_vd_choose(pls_vm m, pls_vd a, pls_vd b)
     return (pls_vd)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)m);
 #else
     return pls_vd_pick(m, a, b);
+#endif
+}
+
+/// Store the lanes of m, leave the others.
+static inline void pls_vd_store_where(pls_vm m, double *p, pls_vd a)
+{
+#if defined(__AVX512F__)
+    _mm512_mask_store_pd(p, m, (__m512d)a);
+#else
+    pls_vd_store(p, pls_vd_choose(m, a, pls_vd_load(p)));
 #endif
 }
 
@@ -324,6 +377,20 @@ static inline __attribute__((always_inline)) void pls_columns8(const pls_row *ro
     for (int k = 0; k < PLS_W; ++k) low[k] = row[k].low, high[k] = row[k].high;
     pls_columns4(low, column);
     pls_columns4(high, column + 4);
+#endif
+}
+
+/// The fourth and the eighth column of PLS_W rows of eight.
+static inline __attribute__((always_inline)) void pls_last_columns(const pls_row *row, pls_vd *fourth, pls_vd *eighth)
+{
+#if PLS_W == 8
+    pls_vd a[4];
+    for (int k = 0; k < 4; ++k) a[k] = __builtin_shufflevector(row[2 * k], row[2 * k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    const pls_vd low = pls_odd_quarters_(a[0], a[1]), high = pls_odd_quarters_(a[2], a[3]);
+    *fourth = pls_even_quarters_(low, high);
+    *eighth = pls_odd_quarters_(low, high);
+#else
+    for (int k = 0; k < PLS_W; ++k) (*fourth)[k] = row[k].low[3], (*eighth)[k] = row[k].high[3];
 #endif
 }
 

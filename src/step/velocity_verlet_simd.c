@@ -82,18 +82,18 @@ static inline void column_store(const group *g, double *column, pls_vd a)
 
 typedef struct drift_sums
 {
-    pls_vd largest[3]; ///< squared components of displacements
+    pls_vd largest[3]; ///< squared components of velocities [m2/s2]
     pls_vd poison;
 } drift_sums;
 
-static inline void report_drift(const drift_sums *sums, pls_drift_report *report)
+static inline void report_drift(const drift_sums *sums, double dt, pls_drift_report *report)
 {
     *report = (pls_drift_report){0.0, 0.0};
     for (int a = 0; a < 3; ++a)
     {
         double largest = 0.0;
         for (int lane = 0; lane < PLS_W; ++lane) largest = sums->largest[a][lane] > largest ? sums->largest[a][lane] : largest;
-        report->largest_square += largest;
+        report->largest_square += dt * dt * largest;
     }
     for (int lane = 0; lane < PLS_W; ++lane) report->poison += sums->poison[lane]; // zeros, or NaN: no order to keep
 }
@@ -111,14 +111,15 @@ static inline __attribute__((always_inline)) void turn(const group *g, const pls
     }
     pls_vd o[4], q[4], x = half * w[0], y = half * w[1], z = half * w[2];
     pls_columns4(row, o);
-    q[0] = o[0] - x * o[1] - y * o[2] - z * o[3];
-    q[1] = o[1] + x * o[0] + y * o[3] - z * o[2];
-    q[2] = o[2] - x * o[3] + y * o[0] + z * o[1];
-    q[3] = o[3] + x * o[2] - y * o[1] + z * o[0];
+    q[0] = pls_vd_less_product(z, o[3], pls_vd_less_product(y, o[2], pls_vd_less_product(x, o[1], o[0])));
+    q[1] = pls_vd_less_product(z, o[2], pls_vd_fma(y, o[3], pls_vd_fma(x, o[0], o[1])));
+    q[2] = pls_vd_fma(z, o[1], pls_vd_fma(y, o[0], pls_vd_less_product(x, o[3], o[2])));
+    q[3] = pls_vd_fma(z, o[0], pls_vd_less_product(y, o[1], pls_vd_fma(x, o[2], o[3])));
     // 1/|q| from |q|^2 = 1 + e; a body turns little in a step, so the series is exact to round-off nearly always.
     const pls_vd little = pls_vd_set(1e-4);
-    pls_vd e = (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]) - 1.0;
-    pls_vd scale = 1.0 - e * (0.5 - e * (0.375 - e * 0.3125));
+    pls_vd e = pls_vd_fma(q[3], q[3], pls_vd_fma(q[2], q[2], pls_vd_fma(q[1], q[1], pls_vd_product_less(q[0], q[0], pls_vd_set(1.0)))));
+    pls_vd scale = pls_vd_less_product(e, pls_vd_set(0.3125), pls_vd_set(0.375));
+    scale = pls_vd_less_product(e, pls_vd_less_product(e, scale, pls_vd_set(0.5)), pls_vd_set(1.0));
     unsigned small = pls_vd_less(e, little) & pls_vd_less(-little, e);
     if (small != (1u << PLS_W) - 1) scale = pls_vd_choose(pls_vm_of(small), scale, 1.0 / pls_vd_sqrt(1.0 + e));
     for (int c = 0; c < 4; ++c) q[c] = scale * q[c];
@@ -129,6 +130,7 @@ static inline __attribute__((always_inline)) void turn(const group *g, const pls
 static inline __attribute__((always_inline)) void begin(group *g, double dt, drift_sums *sums)
 {
     const double half = 0.5 * dt, quarter = 0.25 * dt;
+    const pls_vd zero = pls_vd_set(0.0);
     pls_row last[PLS_W];
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane) last[lane] = pls_row_of_floats(&g->bodies->before[row_of(g, lane)].fx);
@@ -143,16 +145,16 @@ static inline __attribute__((always_inline)) void begin(group *g, double dt, dri
     for (int a = 0; a < 3; ++a)
     {
         pls_vd acceleration = g->load[a] * g->load[3], angular = g->load[4 + a] * g->load[7];
-        lead[a] = quarter * (acceleration + old[a] * g->load[3]);
-        u[a] = g->place[4 + a] + half * acceleration;
-        uw[a] = g->spin[a] + half * angular;
-        g->spin[4 + a] = uw[a] + quarter * (angular + old[4 + a] * g->load[7]);
-        pls_vd step = dt * u[a], square = step * step;
-        g->place[a] = g->place[a] + step;
+        lead[a] = quarter * pls_vd_fma(old[a], g->load[3], acceleration);
+        u[a] = pls_vd_fma(pls_vd_set(half), acceleration, g->place[4 + a]);
+        uw[a] = pls_vd_fma(pls_vd_set(half), angular, g->spin[a]);
+        g->spin[4 + a] = pls_vd_fma(pls_vd_set(quarter), pls_vd_fma(old[4 + a], g->load[7], angular), uw[a]);
+        pls_vd square = u[a] * u[a];
+        g->place[a] = pls_vd_fma(pls_vd_set(dt), u[a], g->place[a]);
         g->place[4 + a] = u[a];
         g->spin[a] = uw[a];
-        sums->largest[a] = pls_vd_pick((pls_vi)(sums->largest[a] > square), sums->largest[a], square);
-        sums->poison = sums->poison + (square * 0.0 + uw[a] * 0.0);
+        sums->largest[a] = pls_vd_max(square, sums->largest[a]);
+        sums->poison = pls_vd_fma(uw[a], zero, pls_vd_fma(square, zero, sums->poison));
     }
     g->spin[3] = lead[0];
     g->spin[7] = lead[1];
@@ -173,7 +175,7 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
         begin(&g, dt, &sums);
         store_motion(&g, 1);
     }
-    report_drift(&sums, report);
+    report_drift(&sums, dt, report);
 }
 
 // ---- the end of a step ----------------------------------------------------------------------------------------------------------------------------------
@@ -257,17 +259,19 @@ static inline __attribute__((always_inline)) void finish(group *g, const pls_row
         load[lane] = pls_row_pick(three, three, sum[lane], pls_row_load(row));
         if (lane < g->count) pls_row_store(row, load[lane]);
     }
-    pls_columns8(load, g->load);
     pls_columns8(sum, total);
+    pls_last_columns(load, &g->load[3], &g->load[7]);
     for (int a = 0; a < 3; ++a)
     {
-        g->place[4 + a] = g->place[4 + a] + half * (g->load[a] * g->load[3]);
-        g->spin[a] = g->spin[a] + half * (g->load[4 + a] * g->load[7]);
+        g->load[a] = total[a], g->load[4 + a] = total[4 + a];
+        g->place[4 + a] = pls_vd_fma(pls_vd_set(half), g->load[a] * g->load[3], g->place[4 + a]);
+        g->spin[a] = pls_vd_fma(pls_vd_set(half), g->load[4 + a] * g->load[7], g->spin[a]);
     }
-    pls_vd power = 0.5 * total[3];
-    column_store(g, b->damped, column_load(g, b->damped) + half * (column_load(g, b->damping_power) + power));
+    const pls_vd power = 0.5 * total[3], last_power = column_load(g, b->damping_power), damped = column_load(g, b->damped),
+                 slid = column_load(g, b->slid);
+    column_store(g, b->damped, pls_vd_fma(pls_vd_set(half), last_power + power, damped));
     column_store(g, b->damping_power, power);
-    column_store(g, b->slid, column_load(g, b->slid) + 0.5 * total[7]);
+    column_store(g, b->slid, pls_vd_fma(pls_vd_set(0.5), total[7], slid));
 }
 
 static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt,
@@ -299,7 +303,7 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
             for (int a = 0; a < 3; ++a) sums.poison = sums.poison + (g.place[4 + a] * 0.0 + g.spin[a] * 0.0);
         store_motion(&g, go_on);
     }
-    report_drift(&sums, report);
+    report_drift(&sums, dt, report);
 }
 
 void PLS_SIMD(pls_verlet_finish)(pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt, const double *force,
