@@ -12,10 +12,9 @@
 #include "contact/broad_phase.h"
 #include "contact/contact_memory.h"
 #include "contact/sphere_contact.h"
+#include "contact/sweep_plan.h"
 
 #include <string.h>
-
-enum { STAYS_BLOCKS = 16 }; ///< blocks for which a row is taken to stay in the near caches
 
 /// Room for `needed` items whose old contents may go. Lists change little from one to the next, so a sixteenth to spare is enough; what a list of a larger skin
 /// needed is given back.
@@ -149,11 +148,10 @@ static pls_status reserve_candidates(pls_pair_list *list, bool periodic)
     PLS_TRY(renew(&list->history, &list->history_capacity, history, sizeof *list->history, "the history of contacts"));
     size_t slots = (list->wall_first + 1) * PLS_SLOT + (count - list->wall_first) * PLS_WALL_SLOT;
     PLS_TRY(renew(&list->slot, &list->slot_capacity, slots, sizeof *list->slot, "the forces of contacts"));
-    memset(list->slot + pls_zero_slot(list) * PLS_SLOT, 0, PLS_SLOT * sizeof *list->slot);
     if (!list->equal_radii)
     {
         PLS_TRY(renew(&list->skew, &list->skew_capacity, list->wall_first + 1, sizeof *list->skew, "the forces of contacts"));
-        list->skew[pls_zero_slot(list)] = 0.0;
+        memset(list->skew, 0, (list->wall_first + 1) * sizeof *list->skew);
     }
     if (history > 0) memset(list->history, 0, history * sizeof *list->history); // vectors of eight read what no contact has written
     memset(list->touch, 0, count / 8 + 1);
@@ -214,74 +212,6 @@ static pls_status cut_blocks(pls_pair_list *list)
     list->wall_blocks = list->block_count;
     PLS_TRY(cut_sections(list, false));
     return order_blocks(list);
-}
-
-/// When the pairs of each group of rows are done with.
-static pls_status bound_groups(pls_pair_list *list, size_t rows)
-{
-    size_t groups = pls_block_count(rows, PLS_ROW_GROUP), capacity = list->group_capacity;
-    PLS_TRY(pls_reserve(&list->group_first, &capacity, groups, sizeof *list->group_first, "groups of rows"));
-    capacity = list->group_capacity;
-    PLS_TRY(pls_reserve(&list->group_last, &capacity, groups, sizeof *list->group_last, "groups of rows"));
-    capacity = list->group_capacity;
-    PLS_TRY(pls_reserve(&list->group_waiting, &capacity, groups, sizeof *list->group_waiting, "groups of rows"));
-    list->group_capacity = capacity;
-    for (size_t g = 0; g < groups; ++g) list->group_first[g] = UINT32_MAX, list->group_last[g] = 0;
-    for (size_t b = list->wall_blocks; b < list->block_count; ++b)
-        for (size_t c = list->block[b].first; c < list->block[b].first + list->block[b].count; ++c)
-        {
-            const size_t two[2] = {list->row_i[c] / PLS_ROW_GROUP, list->row_j[c] / PLS_ROW_GROUP};
-            for (int k = 0; k < 2; ++k)
-            {
-                if (list->group_first[two[k]] == UINT32_MAX) list->group_first[two[k]] = (uint32_t)b;
-                list->group_last[two[k]] = (uint32_t)b;
-            }
-        }
-    return PLS_OK;
-}
-
-/// Note that block b uses a row; where blocks shortly before it have not, it is to be fetched.
-static pls_status use_row(pls_pair_list *list, uint32_t *used, uint32_t row, size_t b, size_t *count)
-{
-    const bool away = used[row] == 0 || b + 1 - used[row] > STAYS_BLOCKS;
-    used[row] = (uint32_t)b + 1;
-    if (!away) return PLS_OK;
-    if (*count == list->fetch_row_capacity)
-        PLS_TRY(pls_reserve(&list->fetch_row, &list->fetch_row_capacity, *count + 1, sizeof *list->fetch_row, "rows to be fetched"));
-    list->fetch_row[(*count)++] = row;
-    return PLS_OK;
-}
-
-static pls_status list_fetches(pls_pair_list *list, uint32_t *used)
-{
-    size_t count = 0;
-    for (size_t b = 0; b < list->block_count; ++b)
-    {
-        list->fetch_start[b] = (uint32_t)count;
-        const size_t first = list->block[b].first;
-        for (size_t c = first; b >= list->wall_blocks && c < first + list->block[b].count; ++c)
-        {
-            PLS_TRY(use_row(list, used, list->row_i[c], b, &count));
-            PLS_TRY(use_row(list, used, list->row_j[c], b, &count));
-        }
-    }
-    list->fetch_start[list->block_count] = list->fetch_start[list->block_count + 1] = (uint32_t)count;
-    // Readers may take a few more than there are.
-    PLS_TRY(
-        pls_reserve(&list->fetch_row, &list->fetch_row_capacity, count + PLS_FETCH_REACH, sizeof *list->fetch_row, "rows to be fetched"));
-    memset(list->fetch_row + count, 0, PLS_FETCH_REACH * sizeof *list->fetch_row);
-    return PLS_OK;
-}
-
-/// What each block of pairs needs that will not be in the near caches: a row comes six times or so in a dense packing, mostly in blocks that follow each other.
-static pls_status find_fetches(pls_pair_list *list, size_t rows)
-{
-    PLS_TRY(renew(&list->fetch_start, &list->fetch_start_capacity, list->block_count + 2, sizeof *list->fetch_start, "rows to be fetched"));
-    uint32_t *used = NULL; // per row: the last block that used it, from 1 on
-    PLS_TRY(pls_allocate(&used, rows, sizeof *used, "rows to be fetched"));
-    pls_status status = list_fetches(list, used);
-    pls_release(&used);
-    return status;
 }
 
 static void fill_candidates(pls_pair_list *list, const pls_bodies *bodies, const pls_law_table *laws, const pls_near_pairs *near,
@@ -456,8 +386,7 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
     if (status == PLS_OK) status = pls_contact_memory_put_back(list, bodies, memory);
     if (status == PLS_OK) status = gather_rows(&list->pairs, list, bodies, false);
     if (status == PLS_OK) status = gather_rows(&list->walls, list, bodies, true);
-    if (status == PLS_OK) status = bound_groups(list, bodies->count);
-    if (status == PLS_OK) status = find_fetches(list, bodies->count);
+    if (status == PLS_OK) status = pls_sweep_plan_make(list, bodies->count, pls_threads() == 1);
     if (status == PLS_OK) status = forget_touching_entries(list, bodies->count);
     if (status == PLS_OK) status = keep_reference(list, bodies);
     if (status != PLS_OK)
@@ -479,9 +408,9 @@ size_t pls_pair_list_bytes(const pls_pair_list *list)
 {
     return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift +
            list->touch_capacity + list->ended_capacity +
-           (list->history_capacity + list->slot_capacity + list->skew_capacity) * sizeof(double) +
+           (list->history_capacity + list->slot_capacity + list->skew_capacity + list->shared_capacity) * sizeof(double) +
            (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity + 3 * list->group_capacity +
-            list->fetch_start_capacity + list->fetch_row_capacity) *
+            list->fetch_start_capacity + list->fetch_row_capacity + list->place_capacity) *
                sizeof *list->pairs.entry;
 }
 
@@ -494,6 +423,8 @@ void pls_pair_list_free(pls_pair_list *list)
     pls_release(&list->group_waiting);
     pls_release(&list->fetch_start);
     pls_release(&list->fetch_row);
+    pls_release(&list->place);
+    pls_release(&list->shared);
     pls_release(&list->row_i);
     pls_release(&list->row_j);
     pls_release(&list->shift);

@@ -18,7 +18,6 @@
 enum {
     PLS_CONTACT_BLOCK = PLS_LAW_BATCH,       ///< candidates per block of work: its arrays stay in the first-level cache
     PLS_PAIR_REACH = PLS_CONTACT_BLOCK + 64, ///< readable candidates behind the last one, pairs (0, 0), for loops that fetch ahead
-    PLS_FETCH_REACH = PLS_CONTACT_BLOCK / 8, ///< readable entries behind the last row to be fetched
     PLS_LARGE_WORLD = 4000,                  ///< bodies from which rows overflow the near caches, so that fetching ahead pays
     PLS_VAST_WORLD = 30000,                  ///< bodies from which they overflow the last cache too
     PLS_ROW_GROUP = 8,                       ///< rows that are finished together
@@ -84,9 +83,19 @@ typedef struct pls_pair_list
     size_t touch_capacity, ended_capacity;
     double *history; ///< of eight candidates at a time: eight values of the first number, eight of the second ...
     size_t history_capacity;
-    double *slot; ///< PLS_SLOT per sphere pair; one that is always zero; PLS_WALL_SLOT per wall pair
+    double *
+        slot; ///< PLS_SLOT per sphere pair, filled where contacts may be looked at after the step; room for one more; PLS_WALL_SLOT per wall pair
     size_t slot_capacity;
-    double *skew; ///< (r_i - r_j) / distance per sphere pair, 0 for the zero slot; not used where all radii are equal
+    // of the sweep (sweep_plan.h)
+    bool alone; ///< one thread has the whole list, so slots are used again
+    double *
+        live; ///< slots of pairs of spheres from which bodies gather, PLS_SLOT each, and one that is always zero: `shared`, or those of `slot`
+    size_t live_count;
+    double *shared;
+    size_t shared_capacity;
+    uint32_t *place; ///< per eight candidates, which eight of `live`
+    size_t place_capacity;
+    double *skew; ///< (r_i - r_j) / distance of each of `live`, 0 for the zero slot; not used where all radii are equal
     size_t skew_capacity;
     bool equal_radii;
     pls_gather_rows pairs, walls;
@@ -111,8 +120,13 @@ static inline uint32_t pls_pair_lower_row(const pls_pair_list *list, size_t cand
     uint32_t i = list->row_i[candidate], j = list->row_j[candidate];
     return i < j ? i : j;
 }
-/// Number of the slot that is always zero.
-static inline size_t pls_zero_slot(const pls_pair_list *list) { return list->wall_first; }
+/// Number of the slot in `live` that is always zero.
+static inline size_t pls_zero_slot(const pls_pair_list *list) { return list->live_count; }
+/// Number of a candidate's slot in `live`.
+static inline size_t pls_live_slot(const pls_pair_list *list, size_t candidate)
+{
+    return (size_t)list->place[candidate >> 3] * 8 + (candidate & 7);
+}
 static inline double *pls_wall_slot(const pls_pair_list *list, size_t candidate)
 {
     return list->slot + (list->wall_first + 1) * PLS_SLOT + (candidate - list->wall_first) * PLS_WALL_SLOT;

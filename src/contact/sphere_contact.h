@@ -60,6 +60,7 @@ typedef struct pls_contact_input
     bool large;   ///< bodies and contacts do not fit the near caches: fetch ahead
     bool vast;    ///< nor the last one
     bool growing; ///< radii may have changed in this step
+    bool kept;    ///< contacts may be looked at after this step
     double dt;    ///< [s]; 0 at the start of a run: no time has passed, springs and dissipation stay
 } pls_contact_input;
 

@@ -162,7 +162,7 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
 /// Springs and slots of candidates c .. ; `now`: they are about to be written.
 static inline __attribute__((always_inline)) void fetch_slots(const pls_pair_list *list, const pls_pair_section *section, size_t c, int now)
 {
-    const double *history = pls_pair_history(list, section, c), *slot = list->slot + c * PLS_SLOT;
+    const double *history = pls_pair_history(list, section, c), *slot = list->live + pls_live_slot(list, c) * PLS_SLOT;
     for (int a = 0; a < 3; ++a) now ? __builtin_prefetch(history + 8 * a, 1) : __builtin_prefetch(history + 8 * a);
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane)
@@ -414,9 +414,15 @@ static inline __attribute__((always_inline)) void store_lanes(const pls_contact_
     pls_rows8(column, row, lanes);
 }
 
+/// Forces of candidates c .. c + count, within eight, stay to be looked at after the step.
+static void keep_slots(const pls_pair_list *list, size_t c, size_t count)
+{
+    memcpy(list->slot + c * PLS_SLOT, list->live + pls_live_slot(list, c) * PLS_SLOT, count * PLS_SLOT * sizeof *list->slot);
+}
+
 static inline void store_skew(const pls_pair_list *list, const pls_contact_input *in, size_t c, double inv_distance)
 {
-    list->skew[c] = (in->place[list->row_i[c]].radius - in->place[list->row_j[c]].radius) * inv_distance;
+    list->skew[pls_live_slot(list, c)] = (in->place[list->row_i[c]].radius - in->place[list->row_j[c]].radius) * inv_distance;
 }
 
 /// The linear law on place m of the arrays, first part: forces had nothing slid.
@@ -465,12 +471,13 @@ static void store_pairs(const pls_pair_list *list, const pls_contact_input *in, 
     {
         const int lanes = lanes_left(work, k);
         double *row[PLS_W];
-        for (int lane = 0; lane < PLS_W; ++lane) row[lane] = list->slot + (size_t)work->active[k + (size_t)lane] * PLS_SLOT;
+        for (int lane = 0; lane < PLS_W; ++lane) row[lane] = list->live + pls_live_slot(list, work->active[k + (size_t)lane]) * PLS_SLOT;
         pls_vd shear[3];
         for (int a = 0; a < 3; ++a) shear[a] = pls_vd_load(&work->shear_force[a][k]);
         store_lanes(work, k, shear, pls_vd_load(&work->slip_work[k]), row, lanes);
         for (int lane = 0; !list->equal_radii && lane < lanes; ++lane)
             store_skew(list, in, work->active[k + (size_t)lane], work->inv_distance[k + (size_t)lane]);
+        for (int lane = 0; in->kept && list->alone && lane < lanes; ++lane) keep_slots(list, work->active[k + (size_t)lane], 1);
     }
 }
 
@@ -733,7 +740,7 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
     const size_t next = (size_t)(block - pairs.block) + 1, turns = PLS_CONTACT_BLOCK / 8;
     const uint32_t *coming = pairs.fetch_row + pairs.fetch_start[next];
     const size_t per_turn = input.large ? (pairs.fetch_start[next + 1] - pairs.fetch_start[next] + turns - 1) / turns : 0;
-    double *old = pls_pair_history(&pairs, section, first), *kept = old, *slot = pairs.slot + first * PLS_SLOT;
+    double *old = pls_pair_history(&pairs, section, first), *kept = old;
     for (size_t turn = 0; turn < count + SETTLE; turn += 8)
     {
         size_t k = turn, m = k % RING;
@@ -788,7 +795,7 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
             for (size_t v = 0; v < 8; v += PLS_W)
             {
                 if (input.large) fetch_slots(&pairs, section, first + k + v + PLS_CONTACT_BLOCK, 0);
-                double *row[PLS_W];
+                double *row[PLS_W], *slot = pairs.live + pls_live_slot(&pairs, first + k) * PLS_SLOT;
                 pls_vd shear[3];
                 pls_vd slip_work = settle_lanes(&law, pls_vm_of((unsigned)work->now[k >> 3] >> v), kept + v, m + v, work, shear);
                 for (size_t lane = 0; lane < PLS_W; ++lane) row[lane] = slot + (v + lane) * PLS_SLOT;
@@ -797,7 +804,7 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
                     store_skew(&pairs, &input, first + k + lane, work->inv_distance[m + lane]);
             }
             kept += onwards;
-            slot += 8 * PLS_SLOT;
+            if (input.kept && pairs.alone) keep_slots(&pairs, first + k, 8);
         }
     }
 }

@@ -11,6 +11,7 @@
 
 #include "base/barrier.h"
 #include "base/parallel.h"
+#include "contact/sweep_plan.h"
 #include "step/velocity_verlet.h"
 
 #include <omp.h>
@@ -19,9 +20,7 @@
 enum {
     SERIAL_BLOCKS = 4,  ///< a loop of no more blocks is not worth waking other threads for
     POSE_BLOCK = 64,    ///< solid bodies whose poses are computed at a time
-    READY_GROUPS = 32,  ///< groups of rows that are finished at a time, if so many are ready
     WAITING_GROUPS = 4, ///< groups that a thread takes at a time to finish what had to wait
-    TAKEN_BLOCKS = 8,   ///< blocks of pairs that a thread takes at a time
     BODY_BLOCK = 256    ///< bodies per block: its rows stay in the second-level cache; at most PLS_FORCE_BATCH
 };
 
@@ -190,7 +189,7 @@ static bool take_blocks(pls_share_left *left, bool front, size_t *first, size_t 
 {
     uint64_t old = __atomic_load_n(&left->blocks, __ATOMIC_RELAXED), new;
     do {
-        uint64_t begin = old >> 32, end = old & UINT32_MAX, count = end - begin < TAKEN_BLOCKS ? end - begin : TAKEN_BLOCKS;
+        uint64_t begin = old >> 32, end = old & UINT32_MAX, count = end - begin < PLS_TAKEN_BLOCKS ? end - begin : PLS_TAKEN_BLOCKS;
         if (count == 0) return false;
         *first = front ? begin : end - count;
         *last = *first + count;
@@ -210,9 +209,8 @@ static void sweep_share(sweep *s, share *mine)
     {
         for (; b < last; ++b) work_block(s, mine, b);
         mine->last_block = last;
-        size_t ready = reached;
-        while (ready < mine->last_group && list->group_last[ready] < last) ++ready;
-        if (ready - reached < READY_GROUPS) continue;
+        const size_t ready = pls_ready_groups(list, reached, mine->last_group, last);
+        if (ready - reached < PLS_READY_GROUPS) continue;
         pls_barrier_wait(&s->walls_known, mine->round);
         finish_ready(s, mine, reached, ready);
         reached = ready;
@@ -242,7 +240,7 @@ static void fetch_group(const pls_world *world, size_t group)
         __builtin_prefetch(&world->bodies.spin[row]);
         __builtin_prefetch(&world->bodies.load[row]);
         if (head[0] == PLS_NEAR_STALE) continue;
-        for (uint32_t k = 0; k < head[0] + head[1]; ++k) __builtin_prefetch(list->slot + (size_t)head[PLS_NEAR_HEAD + k] * PLS_SLOT);
+        for (uint32_t k = 0; k < head[0] + head[1]; ++k) __builtin_prefetch(list->live + (size_t)head[PLS_NEAR_HEAD + k] * PLS_SLOT);
     }
 }
 
@@ -343,6 +341,7 @@ static void close_sweep(sweep *s)
     s->time = (double)(world->step + 1) * world->dt;
     pls_domain_at(&world->domain, s->time);
     s->go_on = may_go_on(world, s->end);
+    s->input.kept = !s->go_on;
     s->total = (pls_drift_report){0.0, 0.0};
 }
 
@@ -376,12 +375,13 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     sweep s = {.world = world, .input = pls_contact_input_of(world, dt), .end = end, .failed_at = SIZE_MAX};
     s.time = dt > 0.0 ? (double)(world->step + 1) * dt : world->time;
     s.go_on = may_go_on(world, end);
+    s.input.kept = !s.go_on;
     for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
     pls_barrier_init(&s.walls_known);
     pls_barrier_init(&s.contacts_known);
     pls_barrier_init(&s.step_done);
-#pragma omp parallel if (list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || \
-                         world->bodies.count > SERIAL_BLOCKS * BODY_BLOCK)
+#pragma omp parallel if (!list->alone && (list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || \
+                                          world->bodies.count > SERIAL_BLOCKS * BODY_BLOCK))
     take_part(&s, omp_get_thread_num(), omp_get_num_threads());
     pls_barrier_destroy(&s.walls_known);
     pls_barrier_destroy(&s.contacts_known);

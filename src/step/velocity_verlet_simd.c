@@ -188,22 +188,19 @@ static __attribute__((noinline)) void list_touching(pls_pair_list *list, size_t 
     for (unsigned side = 2; side-- > 0; from = to) // partners with lower numbers come first: the body is j there
     {
         for (uint32_t k = first; k < last; ++k)
-            if ((entry[k] & 1) == side && pls_pair_touches(list, entry[k] >> 1)) *to++ = entry[k] >> 1;
+            if ((entry[k] & 1) == side && pls_pair_touches(list, entry[k] >> 1)) *to++ = (uint32_t)pls_live_slot(list, entry[k] >> 1);
         while ((to - from) % PLS_NEAR_STRIDE != 0) *to++ = (uint32_t)pls_zero_slot(list);
         head[1 - side] = (uint32_t)(to - from);
     }
 }
 
-static inline pls_row slot_of(const pls_pair_list *list, uint32_t candidate)
-{
-    return pls_row_load(list->slot + (size_t)candidate * PLS_SLOT);
-}
+static inline pls_row slot_of(const pls_pair_list *list, uint32_t number) { return pls_row_load(list->live + (size_t)number * PLS_SLOT); }
 
 /// The same with the torque about the centre of i (side 1) or j (side -1).
-static inline pls_row skewed_slot_of(const pls_pair_list *list, uint32_t candidate, double side)
+static inline pls_row skewed_slot_of(const pls_pair_list *list, uint32_t number, double side)
 {
-    double lever = 1.0 + side * list->skew[candidate];
-    return pls_row_scale(slot_of(list, candidate), pls_v4_set(1.0), (pls_v4){lever, lever, lever, 1.0});
+    double lever = 1.0 + side * list->skew[number];
+    return pls_row_scale(slot_of(list, number), pls_v4_set(1.0), (pls_v4){lever, lever, lever, 1.0});
 }
 
 /// Force, power of dashpots, torque, work of sliders: what the contacts of a body come to, in order of the partners' numbers.
@@ -232,7 +229,7 @@ static inline void fetch_slots(const pls_pair_list *list, size_t row)
     if (head[0] == PLS_NEAR_STALE) return;
     for (const uint32_t *end = entry + head[0] + head[1]; entry < end; entry += PLS_NEAR_STRIDE)
 #pragma GCC unroll 3
-        for (int k = 0; k < PLS_NEAR_STRIDE; ++k) __builtin_prefetch(list->slot + (size_t)entry[k] * PLS_SLOT);
+        for (int k = 0; k < PLS_NEAR_STRIDE; ++k) __builtin_prefetch(list->live + (size_t)entry[k] * PLS_SLOT);
 }
 
 static inline pls_row gather_walls(const pls_pair_list *list, size_t row, pls_row sum)
