@@ -57,6 +57,12 @@ typedef struct pls_gather_rows
     size_t start_capacity, entry_capacity;
 } pls_gather_rows;
 
+/// Around displacements of bodies [m].
+typedef struct pls_moved_box
+{
+    double low[3], high[3];
+} pls_moved_box;
+
 /// Zero-initialise; `pls_pair_list_free` releases.
 typedef struct pls_pair_list
 {
@@ -93,6 +99,8 @@ typedef struct pls_pair_list
     double (*reference)[3]; ///< positions when it was made [m]
     double *reference_radius;
     size_t reference_capacity;
+    pls_moved_box *moved; ///< scratch of looks at how far bodies have moved (approach.c): those that keep the list allocate nothing
+    size_t moved_capacity;
     double skin;           ///< it was made with [m]
     double drift;          ///< bound on how much two bodies can have come nearer since [m]
     double image_drift;    ///< the part of it that a stretching box and turning walls make [m]
