@@ -136,18 +136,26 @@ pls_status pls_neighbours_detach(pls_world *world)
         world->memory_holds = true;
     }
     world->list.stale = true;
+    world->overlap_due = world->lost_due = 0.0; // whoever changes bodies begins here
     return PLS_OK;
+}
+
+/// Two bodies may have come nearer by so much.
+static void note_path(pls_world *world, double length)
+{
+    world->list.drift += length;
+    world->path += length;
 }
 
 void pls_neighbours_moved(pls_world *world, double largest_square)
 {
     double images = 0.0; // a stretching box carries images away
     for (int a = 0; a < 3; ++a) images += fabs(world->domain.edge_rate[a]) * world->dt * world->list.image_reach[a];
-    world->list.drift += 2.0 * sqrt(largest_square) + images;
+    note_path(world, 2.0 * sqrt(largest_square) + images);
     world->list.image_drift += images;
 }
 
-void pls_neighbours_carried(pls_world *world, double further) { world->list.drift += 2.0 * further; }
+void pls_neighbours_carried(pls_world *world, double further) { note_path(world, 2.0 * further); }
 
 /// How far behind their surfaces walls hold: a parameter of their shapes.
 static void set_wall_depths(pls_world *world)

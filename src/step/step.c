@@ -120,6 +120,7 @@ pls_status pls_world_resume(pls_world *world)
 {
     PLS_TRY(reserve_work(world));
     if (world->extent == 0.0) PLS_TRY(pls_measure_extent(world));
+    world->overlap_due = world->lost_due = 0.0;
     pls_domain_at(&world->domain, world->time);
     world->prepared = false; // so that what states drive is set for now, not for the end of a step
     PLS_TRY(pls_states_apply(world));

@@ -82,6 +82,7 @@ typedef struct sweep
 {
     pls_world *world;
     pls_contact_input input;
+    void (*contact_block)(pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block, pls_contact_work *work);
     double time;             ///< of the forces [s]
     uint64_t end;            ///< step that the caller wants to stop at
     bool go_on;              ///< each body begins its next step at once, while its rows are at hand
@@ -133,7 +134,7 @@ static void work_block(sweep *s, share *mine, size_t b)
 {
     pls_world *world = s->world;
     const pls_pair_block *block = &world->list.block[b];
-    PLS_SIMD_SELECT(pls_contact_block)(&world->list, &s->input, block, &world->work[mine->thread]);
+    s->contact_block(&world->list, &s->input, block, &world->work[mine->thread]);
     if (s->input.dt > 0.0 && mine->status == PLS_OK) mine->status = pls_find_parted(world, block, &world->parted[mine->thread]);
 }
 
@@ -176,6 +177,11 @@ static bool must_wait(const pls_pair_list *list, const share *mine, size_t group
 static void finish_ready(sweep *s, share *mine, size_t first, size_t last)
 {
     const pls_pair_list *list = &s->world->list;
+    if (mine->threads == 1)
+    {
+        finish_groups(s, mine, first, last);
+        return;
+    }
     for (size_t g = first; g < last;)
     {
         size_t end = g;
@@ -204,13 +210,13 @@ static void sweep_share(sweep *s, share *mine)
 {
     const pls_pair_list *list = &s->world->list;
     size_t reached = mine->first_group; // groups before this one were looked at while their forces were fresh
+    size_t ready = reached;             // groups before this one have no pairs left in this share
     size_t b, last;
     mine->last_block = mine->first_block; // as far as it has come
     while (take_blocks(&s->world->left[mine->thread], true, &b, &last))
     {
         for (; b < last; ++b) work_block(s, mine, b);
         mine->last_block = last;
-        size_t ready = reached;
         while (ready < mine->last_group && list->group_last[ready] < last) ++ready;
         if (ready - reached < READY_GROUPS) continue;
         pls_barrier_wait(&s->walls_known, mine->round);
@@ -374,6 +380,7 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
 {
     const pls_pair_list *list = &world->list;
     sweep s = {.world = world, .input = pls_contact_input_of(world, dt), .end = end, .failed_at = SIZE_MAX};
+    s.contact_block = PLS_SIMD_SELECT(pls_contact_block);
     s.time = dt > 0.0 ? (double)(world->step + 1) * dt : world->time;
     s.go_on = may_go_on(world, end);
     for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
