@@ -158,6 +158,8 @@ typedef struct pls_contact_memory
 
 pls_status pls_contact_memory_reserve(pls_contact_memory *memory, size_t count);
 void pls_contact_memory_free(pls_contact_memory *memory);
+/// Into the order of the first body's number, then of the other's.
+pls_status pls_contact_memory_sort(pls_contact_memory *memory);
 /// Everything the touching contacts of the list remember, in list order.
 pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory);
 
