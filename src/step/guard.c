@@ -91,12 +91,19 @@ static double smallest_radius(const pls_bodies *b)
     return smallest;
 }
 
+static bool overlap_is_due(const pls_world *world)
+{
+    return world->path >= world->overlap_due || world->state_count > 0; // states may change radii
+}
+
+bool pls_guard_is_due(const pls_world *world) { return overlap_is_due(world) || world->path >= world->lost_due || world->solids.count > 0; }
+
 static pls_status overlap_of_balls(pls_world *world)
 {
     const pls_pair_list *list = &world->list;
     const pls_bodies *b = &world->bodies;
-    if (world->path < world->overlap_due && world->state_count == 0) return PLS_OK; // states may change radii
-    double room = world->def.max_overlap * smallest_radius(b);                      // of those that do not touch
+    if (!overlap_is_due(world)) return PLS_OK;
+    double room = world->def.max_overlap * smallest_radius(b); // of those that do not touch
     for (size_t s = 0; s < list->section_count; ++s)
     {
         const pls_pair_section *section = &list->section[s];

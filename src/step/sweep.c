@@ -218,6 +218,8 @@ static void sweep_share(sweep *s, share *mine)
         for (; b < last; ++b) work_block(s, mine, b);
         mine->last_block = last;
         while (ready < mine->last_group && list->group_last[ready] < last) ++ready;
+        __builtin_prefetch(
+            &list->group_last[ready + READY_GROUPS]); // looked at again eight blocks later, out of the near caches until then
         if (ready - reached < READY_GROUPS) continue;
         pls_barrier_wait(&s->walls_known, mine->round);
         finish_ready(s, mine, reached, ready);
@@ -307,10 +309,17 @@ static void add_counts(pls_narrow_counts *total, const pls_narrow_counts *part)
 
 // ---- the whole ------------------------------------------------------------------------------------------------------------------------------------------
 
-/// Steps may run into each other where nobody looks in between: no guard is due, and no body or state needs to be asked at the end of the step.
+/// Whether somebody has to look at the world at the end of the step that is about to be swept. Its drift is done, so it is known whether the guard can find anything.
+static bool is_looked_at(const pls_world *world)
+{
+    const uint64_t after = world->step + 1;
+    return after % PLS_GUARD_STEPS == 0 && (after % PLS_STABLE_STEPS == 0 || pls_guard_is_due(world));
+}
+
+/// Steps may run into each other where nobody looks in between, and no body or state needs to be asked at the end of the step.
 static bool may_go_on(const pls_world *world, uint64_t end)
 {
-    return world->step + 1 < end && (world->step + 1) % PLS_GUARD_STEPS != 0 && world->special_count == 0 && world->state_count == 0 &&
+    return world->step + 1 < end && !is_looked_at(world) && world->special_count == 0 && world->state_count == 0 &&
            world->binding_count == 0;
 }
 

@@ -202,6 +202,8 @@ enum { PLS_FORCE_SCRATCH = (11 + 6) * PLS_FORCE_BATCH }; ///< doubles: what forc
 pls_status pls_guard_finite(pls_world *world);
 pls_status pls_guard_overlap(pls_world *world);
 pls_status pls_guard_step(pls_world *world);
+/// Whether a look could find anything where bodies are now.
+bool pls_guard_is_due(const pls_world *world);
 
 /// Scale a body: radius, and mass and inertia if it keeps its density. NaN or not positive: INVALID_ARGUMENT.
 pls_status pls_body_rescale(pls_world *world, uint32_t row, double scale, bool keep_density);
