@@ -5,8 +5,7 @@
 // body looks at a bounded number of cells per level, so the cost is linear in bodies for any spread of sizes: a large body never visits its many small
 // neighbours' cells, they visit its own.
 //
-// Cells of a level form a box of bounded size that wraps around (a position far away shares a cell with others, which costs a distance test and nothing else), so
-// memory is linear too, and a body that flies away harms nobody. Along periodic axes the cells divide the box evenly.
+// Cells of a level are bounded in number (cells.h), so memory is linear too; bodies that share a cell from far away cost a distance test and nothing else.
 //
 // The pairs come out in an order fixed by rows and numbers, whatever the number of threads: each block of bodies fills a buffer of its own.
 
@@ -15,6 +14,7 @@
 #include "base/alloc.h"
 #include "base/parallel.h"
 #include "base/sort.h"
+#include "contact/cells.h"
 
 #include <string.h>
 
@@ -34,10 +34,8 @@ typedef struct packed_body
 typedef struct grid_level
 {
     size_t bodies;
-    double inv_cell[3];
-    int64_t cells[3];
+    pls_cells cells;
     size_t cell_start; ///< first entry in `starts`
-    size_t cell_count;
 } grid_level;
 
 typedef struct grids
@@ -48,7 +46,7 @@ typedef struct grids
     double reach_max;
     int level_count;
     grid_level level[MAX_LEVELS];
-    uint32_t *starts;    ///< per level cell_count + 1 offsets into `body`
+    uint32_t *starts;    ///< per level one offset more than it has cells, into `body`
     packed_body *body;   ///< by level, then cell
     uint32_t *cell_of;   ///< place in `starts` of each row's cell
     uint8_t *level_of;   ///< level of each row; MAX_LEVELS for unbounded bodies
@@ -85,48 +83,6 @@ uint64_t pls_morton_key(const double position[3], const double lower[3], double 
     return key;
 }
 
-static void level_cells(grids *g, int k)
-{
-    grid_level *level = &g->level[k];
-    double width = 2.0 * g->reach_max / (double)(UINT64_C(1) << k) * (1.0 + 1e-9); // rounding must not make a cell too narrow
-    double limit = 2.0 * (double)level->bodies + 64.0;
-    double size[3];
-    for (int a = 0; a < 3; ++a)
-    {
-        double extent = g->domain->periodic[a] ? g->domain->edge[a] : g->upper[a] - g->lower[a];
-        double cells = floor(extent / width) + (g->domain->periodic[a] ? 0.0 : 1.0);
-        size[a] = cells < 1.0 ? 1.0 : cells;
-        level->inv_cell[a] = g->domain->periodic[a] ? size[a] / extent : 1.0 / width;
-    }
-    // Too many cells for the bodies: coarsen periodic axes evenly, wrap the others (at least 3 cells, so that a cell's two neighbours differ).
-    while (size[0] * size[1] * size[2] > limit)
-    {
-        int longest = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
-        if (size[longest] <= 4.0) break;
-        size[longest] = ceil(size[longest] / 2.0);
-        if (g->domain->periodic[longest]) level->inv_cell[longest] = size[longest] / g->domain->edge[longest];
-    }
-    level->cell_count = 1;
-    for (int a = 0; a < 3; ++a)
-    {
-        level->cells[a] = (int64_t)size[a];
-        level->cell_count *= (size_t)level->cells[a];
-    }
-}
-
-static inline int64_t wrap_cell(int64_t c, int64_t n)
-{
-    int64_t r = c % n;
-    return r < 0 ? r + n : r;
-}
-
-static inline int64_t cell_along(const grids *g, const grid_level *level, int a, double x)
-{
-    double place = floor((x - g->lower[a]) * level->inv_cell[a]);
-    if (!(place > -1e15 && place < 1e15)) place = 0.0;
-    return (int64_t)place;
-}
-
 static pls_status measure(grids *g)
 {
     const pls_bodies *bodies = g->bodies;
@@ -147,8 +103,6 @@ static pls_status measure(grids *g)
         if (p->radius < smallest) smallest = p->radius;
         ++g->bounded;
     }
-    for (int a = 0; a < 3; ++a)
-        if (g->domain->periodic[a]) g->lower[a] = g->domain->lower[a];
     return PLS_OK;
 }
 
@@ -181,44 +135,31 @@ static pls_status assign_levels(grids *g, double gap)
     return PLS_OK;
 }
 
-/// Position within the box and the image it came from.
-static inline double wrap_position(const grids *g, int a, double x, int16_t *image)
-{
-    if (!g->domain->periodic[a])
-    {
-        *image = 0;
-        return x;
-    }
-    double turns = floor((x - g->domain->lower[a]) / g->domain->edge[a]);
-    if (turns > 16000.0) turns = 16000.0;
-    if (turns < -16000.0) turns = -16000.0;
-    *image = (int16_t)turns;
-    return x - turns * g->domain->edge[a];
-}
-
 static pls_status fill_cells(grids *g, double gap)
 {
     const pls_bodies *bodies = g->bodies;
     size_t starts = 0;
     for (int k = 0; k < g->level_count; ++k)
     {
-        level_cells(g, k);
+        const double width = 2.0 * g->reach_max / (double)(UINT64_C(1) << k);
+        g->level[k].cells = pls_cells_make(g->domain, g->lower, g->upper, width, g->level[k].bodies);
         g->level[k].cell_start = starts;
-        starts += g->level[k].cell_count + 1;
+        starts += g->level[k].cells.count + 1;
     }
     PLS_TRY(pls_allocate(&g->starts, starts + 1, sizeof *g->starts, "the cells of the broad phase"));
     for (size_t row = 0; row < bodies->count; ++row)
     {
         if (g->level_of[row] == MAX_LEVELS) continue;
         const grid_level *level = &g->level[g->level_of[row]];
+        const pls_cells *cells = &level->cells;
         const double x[3] = {bodies->place[row].x, bodies->place[row].y, bodies->place[row].z};
         size_t cell = 0;
         for (int a = 2; a >= 0; --a)
         {
             int16_t image;
-            double w = wrap_position(g, a, x[a], &image);
+            double w = pls_wrap_position(g->domain, a, x[a], &image);
             if (g->image) g->image[row][a] = image;
-            cell = cell * (size_t)level->cells[a] + (size_t)wrap_cell(cell_along(g, level, a, w), level->cells[a]);
+            cell = cell * (size_t)cells->along[a] + (size_t)pls_wrap_cell(pls_cell_along(cells, a, w), cells->along[a]);
         }
         g->cell_of[row] = (uint32_t)(level->cell_start + cell);
         ++g->starts[g->cell_of[row] + 1];
@@ -233,7 +174,7 @@ static pls_status fill_cells(grids *g, double gap)
         for (int a = 0; a < 3; ++a)
         {
             int16_t image;
-            b->x[a] = wrap_position(g, a, x[a], &image);
+            b->x[a] = pls_wrap_position(g->domain, a, x[a], &image);
         }
         b->reach = bodies->place[row].radius + 0.5 * gap;
         b->row = (uint32_t)row;
@@ -272,25 +213,26 @@ static pls_status emit(const grids *g, look_buffer *out, const packed_body *a, c
 static pls_status look_around(const grids *g, look_buffer *out, const packed_body *a, int k, bool own)
 {
     const grid_level *level = &g->level[k];
+    const pls_cells *cells = &level->cells;
     if (level->bodies == 0) return PLS_OK;
     int64_t centre[3], from[3], to[3];
     for (int c = 0; c < 3; ++c)
     {
-        centre[c] = cell_along(g, level, c, a->x[c]);
-        bool narrow = level->cells[c] < 3; // fewer cells than neighbours: visit each once
+        centre[c] = pls_cell_along(cells, c, a->x[c]);
+        bool narrow = cells->along[c] < 3; // fewer cells than neighbours: visit each once
         from[c] = narrow ? 0 : centre[c] - 1;
-        to[c] = narrow ? level->cells[c] - 1 : centre[c] + 1;
+        to[c] = narrow ? cells->along[c] - 1 : centre[c] + 1;
     }
     const double *edge = g->domain->edge;
     for (int64_t z = from[2]; z <= to[2]; ++z)
         for (int64_t y = from[1]; y <= to[1]; ++y)
         {
-            size_t base = level->cell_start +
-                          ((size_t)wrap_cell(z, level->cells[2]) * (size_t)level->cells[1] + (size_t)wrap_cell(y, level->cells[1])) *
-                              (size_t)level->cells[0];
+            size_t base = level->cell_start + ((size_t)pls_wrap_cell(z, cells->along[2]) * (size_t)cells->along[1] +
+                                               (size_t)pls_wrap_cell(y, cells->along[1])) *
+                                                  (size_t)cells->along[0];
             for (int64_t x = from[0]; x <= to[0]; ++x)
             {
-                size_t cell = base + (size_t)wrap_cell(x, level->cells[0]);
+                size_t cell = base + (size_t)pls_wrap_cell(x, cells->along[0]);
                 for (uint32_t m = g->starts[cell]; m < g->starts[cell + 1]; ++m)
                 {
                     const packed_body *b = &g->body[m];

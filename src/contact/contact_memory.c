@@ -19,6 +19,42 @@ void pls_contact_memory_free(pls_contact_memory *memory)
     memset(memory, 0, sizeof *memory);
 }
 
+/// Put each entry where `from` says, along the circles that moving makes; `from` is used up.
+static void permute(struct pls_remembered *entry, uint32_t *from, size_t count)
+{
+    for (size_t k = 0; k < count; ++k)
+    {
+        if (from[k] == k) continue;
+        const struct pls_remembered first = entry[k];
+        size_t to = k;
+        for (size_t next = from[to]; next != k; to = next, next = from[to])
+        {
+            entry[to] = entry[next];
+            from[to] = (uint32_t)to;
+        }
+        entry[to] = first;
+        from[to] = (uint32_t)to;
+    }
+}
+
+pls_status pls_contact_memory_sort(pls_contact_memory *memory)
+{
+    uint64_t *key = NULL;
+    uint32_t *from = NULL;
+    pls_status status = pls_allocate(&key, memory->count, sizeof *key, "ordering what contacts remember");
+    if (status == PLS_OK) status = pls_allocate(&from, memory->count, sizeof *from, "ordering what contacts remember");
+    for (size_t k = 0; status == PLS_OK && k < memory->count; ++k)
+    {
+        key[k] = (uint64_t)memory->entry[k].number_i << 32 | memory->entry[k].number_j;
+        from[k] = (uint32_t)k;
+    }
+    if (status == PLS_OK) status = pls_radix_sort_u64(key, from, memory->count);
+    if (status == PLS_OK) permute(memory->entry, from, memory->count);
+    pls_release(&key);
+    pls_release(&from);
+    return status;
+}
+
 pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory)
 {
     memory->count = 0;

@@ -407,7 +407,7 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
 size_t pls_pair_list_bytes(const pls_pair_list *list)
 {
     return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift +
-           list->touch_capacity + list->ended_capacity +
+           list->touch_capacity + list->ended_capacity + list->moved_capacity * sizeof *list->moved +
            (list->history_capacity + list->slot_capacity + list->skew_capacity + list->shared_capacity) * sizeof(double) +
            (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity + 3 * list->group_capacity +
             list->fetch_start_capacity + list->fetch_row_capacity + list->place_capacity) *
@@ -440,5 +440,6 @@ void pls_pair_list_free(pls_pair_list *list)
     pls_release(&list->near);
     pls_release(&list->reference);
     pls_release(&list->reference_radius);
+    pls_release(&list->moved);
     memset(list, 0, sizeof *list);
 }

@@ -57,6 +57,12 @@ typedef struct pls_gather_rows
     size_t start_capacity, entry_capacity;
 } pls_gather_rows;
 
+/// Around displacements of bodies [m].
+typedef struct pls_moved_box
+{
+    double low[3], high[3];
+} pls_moved_box;
+
 /// Zero-initialise; `pls_pair_list_free` releases.
 typedef struct pls_pair_list
 {
@@ -106,6 +112,8 @@ typedef struct pls_pair_list
     double (*reference)[3]; ///< positions when it was made [m]
     double *reference_radius;
     size_t reference_capacity;
+    pls_moved_box *moved; ///< scratch of looks at how far bodies have moved (approach.c): those that keep the list allocate nothing
+    size_t moved_capacity;
     double skin;           ///< it was made with [m]
     double drift;          ///< bound on how much two bodies can have come nearer since [m]
     double image_drift;    ///< the part of it that a stretching box and turning walls make [m]
@@ -168,6 +176,8 @@ typedef struct pls_contact_memory
 
 pls_status pls_contact_memory_reserve(pls_contact_memory *memory, size_t count);
 void pls_contact_memory_free(pls_contact_memory *memory);
+/// Into the order of the first body's number, then of the other's.
+pls_status pls_contact_memory_sort(pls_contact_memory *memory);
 /// Everything the touching contacts of the list remember, in list order.
 pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *bodies, pls_contact_memory *memory);
 

@@ -3,20 +3,11 @@
 #include "step/contact_view.h"
 
 #include "base/alloc.h"
+#include "base/parallel.h"
+#include "base/sort.h"
 #include "step/world.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-static int by_numbers(const void *a, const void *b)
-{
-    const pls_contact_entry *p = a, *q = b;
-    if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
-    if (p->number_j != q->number_j) return p->number_j < q->number_j ? -1 : 1;
-    if (p->part_i != q->part_i) return p->part_i < q->part_i ? -1 : 1;
-    if (p->part_j != q->part_j) return p->part_j < q->part_j ? -1 : 1;
-    return p->image < q->image ? -1 : p->image > q->image;
-}
 
 static void fill_entry(const pls_world *world, const pls_pair_section *section, size_t c, pls_contact_entry *e)
 {
@@ -104,6 +95,101 @@ static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
     law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);
 }
 
+/// Touching candidates in the order of the view: those of the pair list by number, those of solids behind them.
+typedef struct view_order
+{
+    uint64_t *key; ///< numbers of the two bodies
+    uint32_t *candidate;
+    size_t count;
+} view_order;
+
+static void order_free(view_order *order)
+{
+    pls_release(&order->key);
+    pls_release(&order->candidate);
+}
+
+static void add_key(view_order *order, uint32_t number_i, uint32_t number_j, size_t candidate)
+{
+    order->key[order->count] = (uint64_t)number_i << 32 | number_j;
+    order->candidate[order->count++] = (uint32_t)candidate;
+}
+
+static void collect(const pls_world *world, view_order *order)
+{
+    const pls_pair_list *list = &world->list;
+    const pls_body_kind *kind = world->bodies.kind;
+    for (size_t s = 0; s < list->section_count; ++s)
+    {
+        const pls_pair_section *section = &list->section[s];
+        for (size_t c = section->first; c < section->first + section->count; ++c)
+            if (pls_pair_touches(list, c)) add_key(order, kind[list->row_i[c]].number, kind[list->row_j[c]].number, c);
+    }
+    for (size_t c = 0; c < world->solids.count; ++c)
+    {
+        const pls_solid_memory *memory = &world->solids.memory[c];
+        if (memory->touches == PLS_SOLID_TOUCHES) add_key(order, memory->number_i, memory->number_j, list->count + c);
+    }
+}
+
+static bool part_comes_before(const pls_solid_memory *p, const pls_solid_memory *q)
+{
+    if (p->part_i != q->part_i) return p->part_i < q->part_i;
+    if (p->part_j != q->part_j) return p->part_j < q->part_j;
+    return p->image < q->image;
+}
+
+/// Two solids may touch in several parts.
+static void order_parts(const pls_world *world, view_order *order)
+{
+    const pls_solid_memory *memory = world->solids.memory;
+    const size_t solids = world->list.count;
+    for (size_t k = 1; k < order->count; ++k)
+    {
+        const uint32_t moving = order->candidate[k];
+        size_t m = k;
+        while (m > 0 && order->key[m - 1] == order->key[k] &&
+               part_comes_before(&memory[moving - solids], &memory[order->candidate[m - 1] - solids]))
+        {
+            order->candidate[m] = order->candidate[m - 1];
+            --m;
+        }
+        order->candidate[m] = moving;
+    }
+}
+
+/// Sorted before they are filled in: entries are long.
+static pls_status order_make(const pls_world *world, size_t count, view_order *order)
+{
+    PLS_TRY(pls_allocate(&order->key, count, sizeof *order->key, "the order of contacts"));
+    PLS_TRY(pls_allocate(&order->candidate, count, sizeof *order->candidate, "the order of contacts"));
+    collect(world, order);
+    PLS_TRY(pls_radix_sort_u64(order->key, order->candidate, order->count));
+    order_parts(world, order);
+    return PLS_OK;
+}
+
+static const pls_pair_section *section_of(const pls_pair_list *list, size_t c)
+{
+    const pls_pair_section *section = list->section;
+    while (c < section->first || c >= section->first + section->count) ++section;
+    return section;
+}
+
+static void fill(const pls_world *world, const view_order *order, pls_contact_entry *entry)
+{
+    const pls_pair_list *list = &world->list;
+#pragma omp parallel for schedule(static) if (order->count > PLS_BLOCK)
+    for (size_t k = 0; k < order->count; ++k)
+    {
+        const size_t c = order->candidate[k];
+        if (c < list->count)
+            fill_entry(world, section_of(list, c), c, &entry[k]);
+        else
+            fill_solid(world, c - list->count, &entry[k]);
+    }
+}
+
 pls_status pls_contact_view_make(const pls_world *world, pls_contact_view *view)
 {
     view->count = 0;
@@ -111,19 +197,17 @@ pls_status pls_contact_view_make(const pls_world *world, pls_contact_view *view)
         PLS_TRY(pls_world_prepare((pls_world *)world)); // worlds are never constant themselves, only those who look are bound
     if (world->memory_holds)
         return pls_fail(PLS_INVALID_ARGUMENT, "bodies or laws have changed since the last step; contacts are known again after the next");
-    const pls_pair_list *list = &world->list;
-    PLS_TRY(pls_reserve(&view->entry, &view->capacity, pls_pair_list_touching(list) + pls_solid_list_touching(&world->solids),
-                        sizeof *view->entry, "the view of contacts"));
-    for (size_t s = 0; s < list->section_count; ++s)
+    const size_t count = pls_pair_list_touching(&world->list) + pls_solid_list_touching(&world->solids);
+    view_order order = {0};
+    pls_status status = order_make(world, count, &order);
+    if (status == PLS_OK) status = pls_reserve(&view->entry, &view->capacity, count, sizeof *view->entry, "the view of contacts");
+    if (status == PLS_OK)
     {
-        const pls_pair_section *section = &list->section[s];
-        for (size_t c = section->first; c < section->first + section->count; ++c)
-            if (pls_pair_touches(list, c)) fill_entry(world, section, c, &view->entry[view->count++]);
+        fill(world, &order, view->entry);
+        view->count = order.count;
     }
-    for (size_t c = 0; c < world->solids.count; ++c)
-        if (world->solids.memory[c].touches == PLS_SOLID_TOUCHES) fill_solid(world, c, &view->entry[view->count++]);
-    if (view->count > 1) qsort(view->entry, view->count, sizeof *view->entry, by_numbers);
-    return PLS_OK;
+    order_free(&order);
+    return status;
 }
 
 void pls_contact_view_free(pls_contact_view *view)

@@ -1,10 +1,14 @@
 // guard.c -- what stops a run: numbers that are none, bodies that flew away, overlaps that no contact law is made for.
+//
+// A look at all contacts also tells how much nearer bodies would have to come for the next one to find anything. Until they can have moved so far
+// (world->path), it would find nothing, and is left out.
 
 #include "step/world.h"
 
 #include "base/parallel.h"
 
 static const double far_away = 1000.0; ///< sizes of the first arrangement; who goes further is lost
+static const double surely = 0.99;     ///< of the room that is left: sums of many steps are rounded
 
 pls_status pls_guard_finite(pls_world *world)
 {
@@ -40,46 +44,85 @@ static pls_status overlap_failure(const pls_world *world, uint32_t i, uint32_t j
 }
 
 /// Overlap of a touching candidate and the smaller radius; n: of the section's wall.
-static double overlap_of(const pls_world *world, const pls_pair_section *section, pls_vec3 n, size_t c, double *radius)
+static inline double overlap_of(const pls_world *world, const pls_pair_section *section, pls_vec3 n, size_t c, double *radius)
 {
     const pls_pair_list *list = &world->list;
     const pls_body_place *p = &world->bodies.place[list->row_i[c]], *q = &world->bodies.place[list->row_j[c]];
     double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z};
-    *radius = section->wall ? p->radius : fmin(p->radius, q->radius);
+    *radius = section->wall || p->radius < q->radius ? p->radius : q->radius;
     if (section->wall) return p->radius + n.x * d[0] + n.y * d[1] + n.z * d[2];
     for (int a = 0; world->domain.any_periodic && a < 3; ++a) d[a] += list->shift[c][a] * world->domain.edge[a];
     return p->radius + q->radius - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/// First candidate of a section that overlaps too much, or its end.
-static size_t first_runaway(const pls_world *world, const pls_pair_section *section, pls_vec3 n)
+/// First candidate of a section that overlaps too much, or its end. `room`: how far the others are from that, at least.
+static size_t first_runaway(const pls_world *world, const pls_pair_section *section, pls_vec3 n, double *room)
 {
     const size_t end = section->first + section->count;
+    const double limit = world->def.max_overlap;
     size_t runaway = end;
-#pragma omp parallel for schedule(static) reduction(min : runaway) if (section->count > PLS_BLOCK)
+    double least = *room;
+#pragma omp parallel for schedule(static) reduction(min : runaway, least) if (section->count > PLS_BLOCK)
     for (size_t c = section->first; c < end; ++c)
     {
+        if (!pls_pair_touches(&world->list, c)) continue;
         double radius;
-        if (pls_pair_touches(&world->list, c) && overlap_of(world, section, n, c, &radius) > world->def.max_overlap * radius)
-            runaway = c < runaway ? c : runaway;
+        const double delta = overlap_of(world, section, n, c, &radius), left = limit * radius - delta;
+        if (delta > limit * radius) runaway = c < runaway ? c : runaway;
+        least = left < least ? left : least;
     }
+    *room = least;
     return runaway;
 }
 
-pls_status pls_guard_overlap(pls_world *world)
+/// Whether what bodies do to each other in a section may change by more than they move: they dive up behind a wall, or it turns.
+static bool surprises(const pls_world *world, const pls_pair_section *section)
+{
+    if (!section->wall) return false;
+    const pls_body_spin *spin = &world->bodies.spin[section->wall_row];
+    const bool turns = spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0;
+    return turns || section->depth < INFINITY || (world->bodies.kind[section->wall_row].flags & PLS_BODY_SPECIAL);
+}
+
+static double smallest_radius(const pls_bodies *b)
+{
+    double smallest = INFINITY;
+    for (size_t row = 0; row < b->count; ++row) smallest = b->place[row].radius < smallest ? b->place[row].radius : smallest;
+    return smallest;
+}
+
+static bool overlap_is_due(const pls_world *world)
+{
+    return world->path >= world->overlap_due || world->state_count > 0; // states may change radii
+}
+
+bool pls_guard_is_due(const pls_world *world) { return overlap_is_due(world) || world->path >= world->lost_due || world->solids.count > 0; }
+
+static pls_status overlap_of_balls(pls_world *world)
 {
     const pls_pair_list *list = &world->list;
     const pls_bodies *b = &world->bodies;
+    if (!overlap_is_due(world)) return PLS_OK;
+    double room = world->def.max_overlap * smallest_radius(b); // of those that do not touch
     for (size_t s = 0; s < list->section_count; ++s)
     {
         const pls_pair_section *section = &list->section[s];
         pls_vec3 n = {0};
         if (section->wall) n = pls_wall_normal(&b->orientation[section->wall_row], world->def.dimension);
-        const size_t c = first_runaway(world, section, n);
+        if (surprises(world, section)) room = 0.0;
+        const size_t c = first_runaway(world, section, n, &room);
         if (c == section->first + section->count) continue;
         double radius, delta = overlap_of(world, section, n, c, &radius);
         return overlap_failure(world, list->row_i[c], list->row_j[c], delta, radius);
     }
+    world->overlap_due = world->path + surely * room;
+    return PLS_OK;
+}
+
+pls_status pls_guard_overlap(pls_world *world)
+{
+    const pls_bodies *b = &world->bodies;
+    PLS_TRY(overlap_of_balls(world));
     for (size_t c = 0; c < world->solids.count; ++c)
     {
         const pls_solid_pair *pair = &world->solids.pair[c];
@@ -90,9 +133,25 @@ pls_status pls_guard_overlap(pls_world *world)
     return PLS_OK;
 }
 
-static pls_status guard_lost(const pls_world *world)
+static pls_status lost_failure(const pls_world *world, uint32_t number)
 {
     const pls_bodies *b = &world->bodies;
+    const uint32_t row = b->row_of[number];
+    const pls_body_place *p = &b->place[row];
+    return pls_fail(PLS_LOST_BODY,
+                    "body %u of '%s' is at (%g, %g, %g) m with velocity (%g, %g, %g) m/s at t = %g s, step %llu: %g times the size "
+                    "of the first arrangement away from it. "
+                    "Likely causes: a wall is missing, contacts too soft for its speed, or a time step too large",
+                    number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz,
+                    world->time, (unsigned long long)world->step, far_away);
+}
+
+static pls_status guard_lost(pls_world *world)
+{
+    const pls_bodies *b = &world->bodies;
+    const double limit = far_away * world->extent;
+    double furthest = 0.0;
+    if (world->path < world->lost_due) return PLS_OK;
     for (uint32_t number = 0; number < b->numbers; ++number)
     {
         uint32_t row = b->row_of[number];
@@ -102,14 +161,11 @@ static pls_status guard_lost(const pls_world *world)
         if (world->domain.periodic[0]) d.x = 0.0;
         if (world->domain.periodic[1]) d.y = 0.0;
         if (world->domain.periodic[2]) d.z = 0.0;
-        if (pls_length(d) > far_away * world->extent)
-            return pls_fail(PLS_LOST_BODY,
-                            "body %u of '%s' is at (%g, %g, %g) m with velocity (%g, %g, %g) m/s at t = %g s, step %llu: %g times the size "
-                            "of the first arrangement away from it. "
-                            "Likely causes: a wall is missing, contacts too soft for its speed, or a time step too large",
-                            number, pls_world_group_name(world, (pls_group_id){b->kind[row].group}), p->x, p->y, p->z, p->vx, p->vy, p->vz,
-                            world->time, (unsigned long long)world->step, far_away);
+        const double distance = pls_length(d);
+        if (distance > limit) return lost_failure(world, number);
+        furthest = distance > furthest ? distance : furthest;
     }
+    world->lost_due = world->path + surely * (limit - furthest);
     return PLS_OK;
 }
 

@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "base/sort.h"
+#include "contact/approach.h"
 #include "contact/broad_phase.h"
 
 #include <string.h>
@@ -135,37 +136,26 @@ pls_status pls_neighbours_detach(pls_world *world)
         world->memory_holds = true;
     }
     world->list.stale = true;
+    world->overlap_due = world->lost_due = 0.0; // whoever changes bodies begins here
     return PLS_OK;
+}
+
+/// Two bodies may have come nearer by so much.
+static void note_path(pls_world *world, double length)
+{
+    world->list.drift += length;
+    world->path += length;
 }
 
 void pls_neighbours_moved(pls_world *world, double largest_square)
 {
     double images = 0.0; // a stretching box carries images away
     for (int a = 0; a < 3; ++a) images += fabs(world->domain.edge_rate[a]) * world->dt * world->list.image_reach[a];
-    world->list.drift += 2.0 * sqrt(largest_square) + images;
+    note_path(world, 2.0 * sqrt(largest_square) + images);
     world->list.image_drift += images;
 }
 
-void pls_neighbours_carried(pls_world *world, double further) { world->list.drift += 2.0 * further; }
-
-/// Sum of the two largest true displacements since the list was made, growth of radii included.
-static double true_drift(const pls_world *world)
-{
-    const pls_pair_list *list = &world->list;
-    double largest = 0.0, second = 0.0;
-    for (size_t row = 0; row < world->bodies.count; ++row)
-    {
-        const pls_body_place *p = &world->bodies.place[row];
-        double x = p->x - list->reference[row][0], y = p->y - list->reference[row][1], z = p->z - list->reference[row][2];
-        double moved = sqrt(x * x + y * y + z * z);
-        if (isfinite(p->radius)) moved += fmax(0.0, p->radius - list->reference_radius[row]);
-        if (moved > largest)
-            second = largest, largest = moved;
-        else if (moved > second)
-            second = moved;
-    }
-    return largest + second + list->image_drift;
-}
+void pls_neighbours_carried(pls_world *world, double further) { note_path(world, 2.0 * further); }
 
 /// How far behind their surfaces walls hold: a parameter of their shapes.
 static void set_wall_depths(pls_world *world)
@@ -224,7 +214,8 @@ pls_status pls_neighbours_refresh(pls_world *world)
     if (pls_neighbours_hold(world)) return PLS_OK;
     if (!list->stale)
     {
-        list->drift = true_drift(world);
+        PLS_TRY(pls_pair_list_approach(list, &world->bodies, &world->domain, &list->drift));
+        list->drift += list->image_drift;
         if (list->drift < 0.9 * list->skin) return PLS_OK;
     }
     PLS_TRY(pls_neighbours_detach(world));

@@ -11,18 +11,20 @@
 #include "step/world.h"
 
 #include "base/alloc.h"
+#include "base/sort.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-static int by_numbers(const void *a, const void *b)
+enum { FEW_PARTED = 32 }; ///< contacts that are sorted one by one
+
+static uint64_t key_of(const struct pls_parted *p) { return (uint64_t)p->number_i << 32 | p->number_j; }
+
+static bool comes_before(const struct pls_parted *p, const struct pls_parted *q)
 {
-    const struct pls_parted *p = a, *q = b;
-    if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
-    if (p->number_j != q->number_j) return p->number_j < q->number_j ? -1 : 1;
-    if (p->part_i != q->part_i) return p->part_i < q->part_i ? -1 : 1;
-    if (p->part_j != q->part_j) return p->part_j < q->part_j ? -1 : 1;
-    return p->image < q->image ? -1 : p->image > q->image;
+    if (key_of(p) != key_of(q)) return key_of(p) < key_of(q);
+    if (p->part_i != q->part_i) return p->part_i < q->part_i;
+    if (p->part_j != q->part_j) return p->part_j < q->part_j;
+    return p->image < q->image;
 }
 
 /// Tangential relative velocity in the middle of the step (what rows hold now) of two bodies that have just parted.
@@ -75,8 +77,7 @@ static struct pls_parted parted_of(const pls_world *world, const pls_pair_sectio
                                      .spring_squared = pls_dot(spring, spring),
                                      .history = history + 3};
     law->ops->energy(law->constants, &point, &normal, &shear);
-    return (struct pls_parted){
-        .number_i = b->kind[i].number, .number_j = b->kind[j].number, .row_i = i, .row_j = j, .energy = normal + shear};
+    return (struct pls_parted){.row_i = i, .row_j = j, .energy = normal + shear};
 }
 
 static unsigned long long any_ended(const uint8_t *bytes, size_t count)
@@ -122,9 +123,7 @@ pls_status pls_find_parted_solids(const pls_world *world, const pls_contact_inpu
                                          .history = memory->history};
         double normal, shear;
         law->ops->energy(law->constants, &point, &normal, &shear);
-        found->entry[found->count++] = (struct pls_parted){.number_i = memory->number_i,
-                                                           .number_j = memory->number_j,
-                                                           .part_i = memory->part_i,
+        found->entry[found->count++] = (struct pls_parted){.part_i = memory->part_i,
                                                            .part_j = memory->part_j,
                                                            .image = memory->image,
                                                            .row_i = pair->row_i,
@@ -134,11 +133,9 @@ pls_status pls_find_parted_solids(const pls_world *world, const pls_contact_inpu
     return PLS_OK;
 }
 
-pls_status pls_book_parted(pls_world *world)
+/// Bring all that parted into the list of the first thread.
+static pls_status bring_together(pls_world *world, size_t count)
 {
-    size_t count = 0;
-    for (int t = 0; t < world->work_count; ++t) count += world->parted[t].count;
-    if (count == 0) return PLS_OK;
     pls_parted_list *all = &world->parted[0];
     PLS_TRY(pls_reserve(&all->entry, &all->capacity, count, sizeof *all->entry, "contacts that ended"));
     for (int t = 1; t < world->work_count; ++t)
@@ -148,11 +145,51 @@ pls_status pls_book_parted(pls_world *world)
         all->count += world->parted[t].count;
         world->parted[t].count = 0;
     }
-    if (count > 1) qsort(all->entry, count, sizeof *all->entry, by_numbers);
+    return PLS_OK;
+}
+
+/// The order in which they are booked. Their numbers, cold memory, are asked for in one go here.
+static pls_status order_parted(const pls_bodies *bodies, const pls_parted_list *all, uint64_t *key, uint32_t *order)
+{
+    for (size_t k = 0; k < all->count; ++k)
+    {
+        struct pls_parted *p = &all->entry[k];
+        p->number_i = bodies->kind[p->row_i].number, p->number_j = bodies->kind[p->row_j].number;
+        key[k] = key_of(p);
+        order[k] = (uint32_t)k;
+    }
+    if (all->count > FEW_PARTED) PLS_TRY(pls_radix_sort_u64(key, order, all->count));
+    for (size_t k = 1; k < all->count; ++k) // few, or in order but for several parts of two bodies
+    {
+        const uint32_t moving = order[k];
+        size_t m = k;
+        for (; m > 0 && comes_before(&all->entry[moving], &all->entry[order[m - 1]]); --m) order[m] = order[m - 1];
+        order[m] = moving;
+    }
+    return PLS_OK;
+}
+
+pls_status pls_book_parted(pls_world *world)
+{
+    size_t count = 0;
+    for (int t = 0; t < world->work_count; ++t) count += world->parted[t].count;
+    if (count == 0) return PLS_OK;
+    PLS_TRY(bring_together(world, count));
+    pls_parted_list *all = &world->parted[0];
+    pls_parted_order *sorted = &world->parted_order;
+    if (count > sorted->capacity)
+    {
+        const size_t grown = count + count / 2;
+        PLS_TRY(pls_reallocate(&sorted->key, sorted->capacity, grown, sizeof *sorted->key, "contacts that ended"));
+        PLS_TRY(pls_reallocate(&sorted->place, sorted->capacity, grown, sizeof *sorted->place, "contacts that ended"));
+        sorted->capacity = grown;
+    }
+    PLS_TRY(order_parted(&world->bodies, all, sorted->key, sorted->place));
     for (size_t k = 0; k < count; ++k)
     {
-        world->bodies.slid[all->entry[k].row_i] += 0.5 * all->entry[k].energy;
-        world->bodies.slid[all->entry[k].row_j] += 0.5 * all->entry[k].energy;
+        const struct pls_parted *p = &all->entry[sorted->place[k]];
+        world->bodies.slid[p->row_i] += 0.5 * p->energy;
+        world->bodies.slid[p->row_j] += 0.5 * p->energy;
     }
     all->count = 0;
     return PLS_OK;
@@ -162,4 +199,7 @@ void pls_parted_free(pls_world *world)
 {
     for (int t = 0; world->parted && t < world->work_count; ++t) pls_release(&world->parted[t].entry);
     pls_release(&world->parted);
+    pls_release(&world->parted_order.key);
+    pls_release(&world->parted_order.place);
+    world->parted_order.capacity = 0;
 }

@@ -6,15 +6,7 @@
 #include "base/hash.h"
 #include "step/world.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-static int by_numbers(const void *a, const void *b)
-{
-    const struct pls_remembered *p = a, *q = b;
-    if (p->number_i != q->number_i) return p->number_i < q->number_i ? -1 : 1;
-    return p->number_j < q->number_j ? -1 : p->number_j > q->number_j;
-}
 
 /// Contacts in order of numbers: i below j for pairs, the wall second for walls.
 static pls_status contact_table(pls_world *world, pls_contact_memory *memory)
@@ -27,8 +19,7 @@ static pls_status contact_table(pls_world *world, pls_contact_memory *memory)
     }
     else if (world->list.count > 0)
         PLS_TRY(pls_pair_list_remember(&world->list, &world->bodies, memory));
-    if (memory->count > 1) qsort(memory->entry, memory->count, sizeof *memory->entry, by_numbers);
-    return PLS_OK;
+    return pls_contact_memory_sort(memory);
 }
 
 /// Records of solids in order of numbers.

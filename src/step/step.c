@@ -12,8 +12,6 @@
 #include "step/sweep.h"
 #include "step/timestep.h"
 
-enum { STABLE_STEPS = 4096 }; ///< steps between looks at the stable step
-
 pls_contact_input pls_contact_input_of(const pls_world *world, double dt)
 {
     const pls_bodies *bodies = &world->bodies;
@@ -33,7 +31,7 @@ pls_contact_input pls_contact_input_of(const pls_world *world, double dt)
 static pls_status check_step(pls_world *world)
 {
     if (world->step % PLS_GUARD_STEPS == 0) PLS_TRY(pls_guard_step(world));
-    bool due = world->step % STABLE_STEPS == 0 || (world->step % PLS_GUARD_STEPS == 0 && pls_stable_step_is_stale(world));
+    bool due = world->step % PLS_STABLE_STEPS == 0 || (world->step % PLS_GUARD_STEPS == 0 && pls_stable_step_is_stale(world));
     return due ? pls_check_stable_step(world) : PLS_OK;
 }
 
@@ -120,6 +118,7 @@ pls_status pls_world_resume(pls_world *world)
 {
     PLS_TRY(reserve_work(world));
     if (world->extent == 0.0) PLS_TRY(pls_measure_extent(world));
+    world->overlap_due = world->lost_due = 0.0;
     pls_domain_at(&world->domain, world->time);
     world->prepared = false; // so that what states drive is set for now, not for the end of a step
     PLS_TRY(pls_states_apply(world));

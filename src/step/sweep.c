@@ -81,6 +81,7 @@ typedef struct sweep
 {
     pls_world *world;
     pls_contact_input input;
+    void (*contact_block)(pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block, pls_contact_work *work);
     double time;             ///< of the forces [s]
     uint64_t end;            ///< step that the caller wants to stop at
     bool go_on;              ///< each body begins its next step at once, while its rows are at hand
@@ -132,7 +133,7 @@ static void work_block(sweep *s, share *mine, size_t b)
 {
     pls_world *world = s->world;
     const pls_pair_block *block = &world->list.block[b];
-    PLS_SIMD_SELECT(pls_contact_block)(&world->list, &s->input, block, &world->work[mine->thread]);
+    s->contact_block(&world->list, &s->input, block, &world->work[mine->thread]);
     if (s->input.dt > 0.0 && mine->status == PLS_OK) mine->status = pls_find_parted(world, block, &world->parted[mine->thread]);
 }
 
@@ -175,6 +176,11 @@ static bool must_wait(const pls_pair_list *list, const share *mine, size_t group
 static void finish_ready(sweep *s, share *mine, size_t first, size_t last)
 {
     const pls_pair_list *list = &s->world->list;
+    if (mine->threads == 1)
+    {
+        finish_groups(s, mine, first, last);
+        return;
+    }
     for (size_t g = first; g < last;)
     {
         size_t end = g;
@@ -203,13 +209,16 @@ static void sweep_share(sweep *s, share *mine)
 {
     const pls_pair_list *list = &s->world->list;
     size_t reached = mine->first_group; // groups before this one were looked at while their forces were fresh
+    size_t ready = reached;             // groups before this one have no pairs left in this share
     size_t b, last;
     mine->last_block = mine->first_block; // as far as it has come
     while (take_blocks(&s->world->left[mine->thread], true, &b, &last))
     {
         for (; b < last; ++b) work_block(s, mine, b);
         mine->last_block = last;
-        const size_t ready = pls_ready_groups(list, reached, mine->last_group, last);
+        ready = pls_ready_groups(list, ready, mine->last_group, last);
+        // Looked at again eight blocks later, out of the near caches until then.
+        if (ready + PLS_READY_GROUPS < mine->last_group) __builtin_prefetch(&list->group_last[ready + PLS_READY_GROUPS]);
         if (ready - reached < PLS_READY_GROUPS) continue;
         pls_barrier_wait(&s->walls_known, mine->round);
         finish_ready(s, mine, reached, ready);
@@ -299,10 +308,17 @@ static void add_counts(pls_narrow_counts *total, const pls_narrow_counts *part)
 
 // ---- the whole ------------------------------------------------------------------------------------------------------------------------------------------
 
-/// Steps may run into each other where nobody looks in between: no guard is due, and no body or state needs to be asked at the end of the step.
+/// Whether somebody has to look at the world at the end of the step that is about to be swept. Its drift is done, so it is known whether the guard can find anything.
+static bool is_looked_at(const pls_world *world)
+{
+    const uint64_t after = world->step + 1;
+    return after % PLS_GUARD_STEPS == 0 && (after % PLS_STABLE_STEPS == 0 || pls_guard_is_due(world));
+}
+
+/// Steps may run into each other where nobody looks in between, and no body or state needs to be asked at the end of the step.
 static bool may_go_on(const pls_world *world, uint64_t end)
 {
-    return world->step + 1 < end && (world->step + 1) % PLS_GUARD_STEPS != 0 && world->special_count == 0 && world->state_count == 0 &&
+    return world->step + 1 < end && !is_looked_at(world) && world->special_count == 0 && world->state_count == 0 &&
            world->binding_count == 0;
 }
 
@@ -373,6 +389,7 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
 {
     const pls_pair_list *list = &world->list;
     sweep s = {.world = world, .input = pls_contact_input_of(world, dt), .end = end, .failed_at = SIZE_MAX};
+    s.contact_block = PLS_SIMD_SELECT(pls_contact_block);
     s.time = dt > 0.0 ? (double)(world->step + 1) * dt : world->time;
     s.go_on = may_go_on(world, end);
     s.input.kept = !s.go_on;

@@ -4,7 +4,10 @@
 
 #include "step/world.h"
 
-enum { PLS_GUARD_STEPS = 64 }; ///< steps between looks at overlaps and lost bodies
+enum {
+    PLS_GUARD_STEPS = 64,   ///< steps between looks at overlaps and lost bodies
+    PLS_STABLE_STEPS = 4096 ///< steps between looks at the stable step; a multiple of the former
+};
 
 /// Half kick and drift of all bodies.
 pls_status pls_begin_bodies(pls_world *world);

@@ -16,6 +16,7 @@
 
 #include "step/timestep.h"
 
+#include "base/parallel.h"
 #include "math/eigen6.h"
 #include "step/whole_rates.h"
 
@@ -31,9 +32,9 @@ static double stable_dt(double stiffness, double damping)
     return root > 0.0 ? 2.0 / root : INFINITY;
 }
 
-/// Add weight (kn Jn^T Jn + kt sum of Jt^T Jt) to a matrix; rows of J scaled by the roots of inverse mass and inertia.
-static void add_contact(double *a, int dimension, pls_vec3 n, pls_vec3 arm, double root_mass, const double root_inertia[6], double kn,
-                        double kt)
+/// Add kn Jn^T Jn + kt sum of Jt^T Jt to the stiffness and likewise to the damping; rows of J scaled by the roots of inverse mass and inertia.
+static void add_contact(pls_body_rates *rates, int dimension, pls_vec3 n, pls_vec3 arm, double root_mass, const double root_inertia[6],
+                        const pls_contact_stiffness *k)
 {
     double row[4][6] = {{0}}; // along x, y, z and n
     for (int e = 0; e < 4; ++e)
@@ -48,21 +49,20 @@ static void add_contact(double *a, int dimension, pls_vec3 n, pls_vec3 arm, doub
         for (int c = 0; c < 6; ++c)
         {
             double all = row[0][r] * row[0][c] + row[1][r] * row[1][c] + row[2][r] * row[2][c], along = row[3][r] * row[3][c];
-            a[6 * r + c] += kn * along + kt * (all - along);
+            rates->stiffness[6 * r + c] += k->kn * along + k->kt * (all - along);
+            rates->damping[6 * r + c] += k->cn * along + k->ct * (all - along);
         }
 }
 
 static void add_rate(const pls_world *world, uint32_t row, const pls_contact_rate *t, const double root_inertia[6], pls_body_rates *rates)
 {
     const pls_bodies *b = &world->bodies;
-    const int d = world->def.dimension;
     uint32_t other = row == t->i ? t->j : t->i;
     double m = b->mass[row].mass;
     double ratio = b->load[other].inv_mass > 0.0 ? fmin(fmax(m / b->mass[other].mass, 1.0 / 3.0), 3.0) : 0.0;
-    double root_mass = 1.0 / sqrt(m), weight = 1.0 + ratio;
-    pls_vec3 arm = row == t->i ? t->arm_i : t->arm_j;
-    add_contact(rates->stiffness, d, t->n, arm, root_mass, root_inertia, weight * t->k.kn, weight * t->k.kt);
-    add_contact(rates->damping, d, t->n, arm, root_mass, root_inertia, weight * t->k.cn, weight * t->k.ct);
+    double weight = 1.0 + ratio;
+    const pls_contact_stiffness k = {.kn = weight * t->k.kn, .kt = weight * t->k.kt, .cn = weight * t->k.cn, .ct = weight * t->k.ct};
+    add_contact(rates, world->def.dimension, t->n, row == t->i ? t->arm_i : t->arm_j, 1.0 / sqrt(m), root_inertia, &k);
 }
 
 static void add_from_list(const pls_world *world, uint32_t row, uint32_t entry, const double root_inertia[6], pls_body_rates *rates)
@@ -86,8 +86,23 @@ static void add_solids(const pls_world *world, uint32_t row, const double root_i
     }
 }
 
-/// A cheap bound of the largest eigenvalue, at most 1.5 % too large: the 64th root of the largest row sum of A^64 (Gershgorin), by six squarings, each of a
-/// matrix whose largest entry is one.
+/// As fmax, not a number `b` included, without a call.
+static inline double larger(double a, double b) { return b > a ? b : a; }
+
+/// The largest row sum of a matrix, which its eigenvalues do not exceed (Gershgorin).
+static double row_bound(const double *a)
+{
+    double bound = 0.0;
+    for (int r = 0; r < 6; ++r)
+    {
+        double sum = 0.0;
+        for (int c = 0; c < 6; ++c) sum += fabs(a[6 * r + c]);
+        bound = larger(bound, sum);
+    }
+    return bound;
+}
+
+/// A bound of the largest eigenvalue, at most 1.5 % too large: the 64th root of that of A^64, by six squarings, each of a matrix whose largest entry is one.
 static double power_bound(const double *a)
 {
     enum { SQUARINGS = 6 };
@@ -97,7 +112,7 @@ static double power_bound(const double *a)
     {
         double next[36];
         scale[s] = 0.0;
-        for (int k = 0; k < 36; ++k) scale[s] = fmax(scale[s], fabs(power[k]));
+        for (int k = 0; k < 36; ++k) scale[s] = larger(scale[s], fabs(power[k]));
         if (!(scale[s] > 0.0)) return 0.0;
         for (int k = 0; k < 36; ++k) power[k] /= scale[s];
         for (int r = 0; s < SQUARINGS && r < 6; ++r)
@@ -109,14 +124,7 @@ static double power_bound(const double *a)
             }
         if (s < SQUARINGS) memcpy(power, next, sizeof power);
     }
-    double bound = 0.0;
-    for (int r = 0; r < 6; ++r)
-    {
-        double sum = 0.0;
-        for (int c = 0; c < 6; ++c) sum += fabs(power[6 * r + c]);
-        bound = fmax(bound, sum);
-    }
-    bound *= scale[SQUARINGS];
+    double bound = scale[SQUARINGS] * row_bound(power);
     for (int s = SQUARINGS - 1; s >= 0; --s) bound = scale[s] * sqrt(bound); // of A_s = scale_s B, A_(s+1) = B^2
     return bound;
 }
@@ -139,26 +147,43 @@ static pls_body_rates rates_of(const pls_world *world, uint32_t row, int coordin
     return rates;
 }
 
-/// The bound body by body.
-static void estimate(const pls_world *world, int coordination, pls_step_estimate *best)
+/// Whether the body allows a smaller step than `dt`, judged by bounds of more and more work.
+static bool is_worse(const pls_body_rates *rates, double dt)
 {
-    const pls_bodies *b = &world->bodies;
-    *best = (pls_step_estimate){.dt = INFINITY};
-    for (uint32_t number = 0; number < b->numbers; ++number)
+    return stable_dt(row_bound(rates->stiffness), row_bound(rates->damping)) < dt &&
+           stable_dt(power_bound(rates->stiffness), power_bound(rates->damping)) < dt;
+}
+
+/// Let the body take the place of the worst one if it allows a smaller step.
+static void estimate_body(const pls_world *world, uint32_t number, int coordination, pls_step_estimate *worst)
+{
+    const uint32_t row = world->bodies.row_of[number];
+    if (row == PLS_NO_ROW || world->bodies.load[row].inv_mass == 0.0) return;
+    pls_body_rates rates = rates_of(world, row, coordination);
+    if (!is_worse(&rates, worst->dt)) return;
+    double stiffness = pls_largest_eigenvalue(rates.stiffness, 6), damping = pls_largest_eigenvalue(rates.damping, 6);
+    double dt = stable_dt(stiffness, damping);
+    if (!(dt < worst->dt)) return;
+    *worst = (pls_step_estimate){.dt = dt,
+                                 .stiffness = stiffness,
+                                 .damping = damping,
+                                 .body = number,
+                                 .contacts = rates.contacts,
+                                 .damping_limits = damping > sqrt(stiffness)};
+}
+
+/// The bound body by body: of those that allow the smallest step, less than `below`, the first; none: a step of `below`.
+static void estimate(const pls_world *world, int coordination, double below, pls_step_estimate *worst)
+{
+    const uint32_t numbers = (uint32_t)world->bodies.numbers;
+    *worst = (pls_step_estimate){.dt = below};
+#pragma omp parallel if (numbers > PLS_BLOCK)
     {
-        uint32_t row = b->row_of[number];
-        if (row == PLS_NO_ROW || b->load[row].inv_mass == 0.0) continue;
-        pls_body_rates rates = rates_of(world, row, coordination);
-        if (stable_dt(power_bound(rates.stiffness), power_bound(rates.damping)) >= best->dt) continue; // it cannot be the worst
-        double stiffness = pls_largest_eigenvalue(rates.stiffness, 6), damping = pls_largest_eigenvalue(rates.damping, 6);
-        double dt = stable_dt(stiffness, damping);
-        if (!(dt < best->dt)) continue;
-        *best = (pls_step_estimate){.dt = dt,
-                                    .stiffness = stiffness,
-                                    .damping = damping,
-                                    .body = number,
-                                    .contacts = rates.contacts,
-                                    .damping_limits = damping > sqrt(stiffness)};
+        pls_step_estimate mine = {.dt = below};
+#pragma omp for schedule(static)
+        for (uint32_t number = 0; number < numbers; ++number) estimate_body(world, number, coordination, &mine);
+#pragma omp critical(pls_step_estimate)
+        if (mine.dt < worst->dt || (mine.dt == worst->dt && mine.dt < below && mine.body < worst->body)) *worst = mine;
     }
 }
 
@@ -234,7 +259,7 @@ pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *out)
         mark_near(world);
         mark_near_solids(world);
     }
-    estimate(world, world->def.coordination, out);
+    estimate(world, world->def.coordination, INFINITY, out);
     if (!world->prepared) mark_none(world);
     return PLS_OK;
 }
@@ -243,7 +268,7 @@ pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *out)
 static pls_status only_assumed(const pls_world *world, bool *only)
 {
     pls_step_estimate now;
-    estimate(world, 0, &now);
+    estimate(world, 0, INFINITY, &now);
     if (world->dt > now.dt) PLS_TRY(refine(world, 0, &now));
     *only = world->dt <= now.dt;
     return PLS_OK;
@@ -280,7 +305,7 @@ pls_status pls_choose_step(pls_world *world)
     pls_step_estimate e;
     mark_near(world);
     mark_near_solids(world);
-    estimate(world, world->def.coordination, &e);
+    estimate(world, world->def.coordination, INFINITY, &e);
     pls_status status = PLS_OK;
     if (world->dt > e.dt && !world->def.allow_unstable)
     {
@@ -315,7 +340,7 @@ pls_status pls_check_stable_step(pls_world *world)
     for (size_t l = 0; l < world->laws.law_count; ++l)
         memcpy(world->laws.law[l].checked, world->laws.law[l].constants, sizeof world->laws.law[l].checked);
     pls_step_estimate e;
-    estimate(world, 0, &e);
+    estimate(world, 0, world->dt, &e);
     if (world->dt <= e.dt) return PLS_OK;
     PLS_TRY(refine(world, 0, &e));
     return world->dt <= e.dt ? PLS_OK : refuse(world, 0, &e);

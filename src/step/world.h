@@ -81,6 +81,14 @@ typedef struct pls_parted_list
     size_t count, capacity;
 } pls_parted_list;
 
+/// Scratch to order them.
+typedef struct pls_parted_order
+{
+    uint64_t *key;
+    uint32_t *place; ///< in the list
+    size_t capacity;
+} pls_parted_order;
+
 /// What is left of a thread's share of a step. A cache line each.
 typedef struct pls_share_left
 {
@@ -119,7 +127,8 @@ struct pls_world
     bool memory_holds;         ///< `memory` and `records`, not the lists, have the contacts (between a change of bodies and the next list)
     pls_contact_work *work;    ///< one per thread
     pls_parted_list *parted;   ///< contacts that ended in this step, one list per thread
-    pls_share_left *left;      ///< one per thread
+    pls_parted_order parted_order;
+    pls_share_left *left; ///< one per thread
     int work_count;
     pls_skin_tuner tuner;
     pls_special *special;
@@ -130,9 +139,12 @@ struct pls_world
     uint64_t step; ///< steps done
     double time;   ///< step * dt
     bool prepared;
-    double extent;    ///< size of the first arrangement [m], for lost bodies; 0 until measured
-    pls_vec3 centre;  ///< of the first arrangement [m]
-    void *persisting; ///< contact table while persist.c reads it
+    double path;        ///< bound on how much two bodies can have come nearer in all steps [m]
+    double overlap_due; ///< length of the path from which an overlap may be too large [m]
+    double lost_due;    ///< likewise, from which a body may be lost [m]
+    double extent;      ///< size of the first arrangement [m], for lost bodies; 0 until measured
+    pls_vec3 centre;    ///< of the first arrangement [m]
+    void *persisting;   ///< contact table while persist.c reads it
 };
 
 // motion.c
@@ -190,6 +202,8 @@ enum { PLS_FORCE_SCRATCH = (11 + 6) * PLS_FORCE_BATCH }; ///< doubles: what forc
 pls_status pls_guard_finite(pls_world *world);
 pls_status pls_guard_overlap(pls_world *world);
 pls_status pls_guard_step(pls_world *world);
+/// Whether a look could find anything where bodies are now.
+bool pls_guard_is_due(const pls_world *world);
 
 /// Scale a body: radius, and mass and inertia if it keeps its density. NaN or not positive: INVALID_ARGUMENT.
 pls_status pls_body_rescale(pls_world *world, uint32_t row, double scale, bool keep_density);

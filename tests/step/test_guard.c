@@ -1,8 +1,10 @@
-// test_guard.c -- what stops a run: numbers that are not finite, in the step in which they appear; a step that has become too large.
+// test_guard.c -- what stops a run: numbers that are not finite, in the step in which they appear; overlaps too large and bodies lost, at the next look; a step that has
+// become too large.
 
 #include <particls/particls.h>
 
 #include "support/numbers.h"
+#include "support/verify.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -168,11 +170,80 @@ static void a_refused_step_tells_of_contacts_still_to_come(void **state)
     pls_world_destroy(world);
 }
 
+/// Steps until the world stops with `expected`, in one go or one by one.
+static uint64_t step_that_fails(pls_world *world, bool at_once, pls_status expected)
+{
+    enum { MOST = 20000 };
+    pls_status status = PLS_OK;
+    if (at_once) status = pls_world_run(world, MOST);
+    for (int k = 0; !at_once && k < MOST && status == PLS_OK; ++k) status = pls_step(world);
+    assert_int_equal(status, expected);
+    return pls_world_step_number(world);
+}
+
+/// A sphere of radius 1 m carried along x at `speed` from `x`, and a free one at the origin.
+static pls_world *carried_and_free(double x, double speed, double max_overlap)
+{
+    pls_world_def def = pls_default_world_def(3);
+    def.dt = 1e-3;
+    def.max_overlap = max_overlap;
+    const verify_value weak[] = {{"kn", 1e-6}, {"ks", 1e-6}, {"cn", 0.0}, {"cs", 0.0}, {"friction", 0.0}, {NULL, 0.0}};
+    verify_scene s = verify_open(&def, "viscoelastic", weak);
+    verify_ball(&s, 1.0, 1.0, pls_vec(0.0, 0.0, 0.0), pls_vec(0.0, 0.0, 0.0));
+    pls_body_def carried = verify_ball_def(&s, 1.0, 1.0, pls_vec(x, 0.0, 0.0), pls_vec(0.0, 0.0, 0.0));
+    carried.motion = (pls_motion_def){.axes = PLS_AXIS_ALL, .velocity = pls_vec(speed, 0.0, 0.0)};
+    verify_add(&s, &carried);
+    return s.world;
+}
+
+/// Looks that cannot find anything are left out, but none that would: the first of those every 64 steps behind the step in which the overlap passes its bound.
+static void an_overlap_that_grows_slowly_stops_the_run_at_the_next_look(void **state)
+{
+    (void)state;
+    for (int at_once = 0; at_once < 2; ++at_once)
+    {
+        pls_world *world = carried_and_free(2.5, -1.0, 0.5); // the overlap is t - 0.5, 0.5 in step 1000
+        assert_int_equal(step_that_fails(world, at_once != 0, PLS_RUNAWAY_OVERLAP), 1024);
+        pls_world_destroy(world);
+    }
+}
+
+static void an_overlap_made_by_a_new_body_is_seen_at_the_next_look(void **state)
+{
+    (void)state;
+    pls_world *world = carried_and_free(1.9, 0.0, 0.5);
+    assert_int_equal(pls_world_run(world, 100), PLS_OK);
+    pls_body_def body = pls_default_body_def();
+    body.shape = (pls_shape_id){1}, body.material = (pls_material_id){1};
+    body.position = pls_vec(0.6, 1.0, 0.0);
+    pls_body_id id;
+    assert_int_equal(pls_world_add_body(world, &body, &id), PLS_OK);
+    assert_int_equal(step_that_fails(world, true, PLS_RUNAWAY_OVERLAP), 128);
+    pls_world_destroy(world);
+}
+
+static void a_body_that_flies_away_stops_the_run_at_the_next_look(void **state)
+{
+    (void)state;
+    for (int at_once = 0; at_once < 2; ++at_once)
+    {
+        pls_world *world =
+            carried_and_free(10.0, 1000.0, 1.0); // 5 m + 1 m per step from the middle; 1000 sizes sqrt(12^2 + 2^2 + 2^2) m in step 12325
+        assert_int_equal(step_that_fails(world, at_once != 0, PLS_LOST_BODY), 12352);
+        pls_world_destroy(world);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_step_that_makes_a_velocity_not_a_number_is_refused),
-                                       cmocka_unit_test(a_law_that_stiffens_is_noticed_within_64_steps),
-                                       cmocka_unit_test(what_no_force_can_move_passes_through_its_like),
-                                       cmocka_unit_test(a_refused_step_tells_of_contacts_still_to_come)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_step_that_makes_a_velocity_not_a_number_is_refused),
+        cmocka_unit_test(a_law_that_stiffens_is_noticed_within_64_steps),
+        cmocka_unit_test(what_no_force_can_move_passes_through_its_like),
+        cmocka_unit_test(a_refused_step_tells_of_contacts_still_to_come),
+        cmocka_unit_test(an_overlap_that_grows_slowly_stops_the_run_at_the_next_look),
+        cmocka_unit_test(an_overlap_made_by_a_new_body_is_seen_at_the_next_look),
+        cmocka_unit_test(a_body_that_flies_away_stops_the_run_at_the_next_look),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -228,6 +228,28 @@ static void a_driven_plane_that_jumps_meets_what_is_there(void **state)
     jump_at(true);
 }
 
+// ---- bodies that move together ------------------------------------------------------------------------------------------------------------------------
+
+/// A row of balls that fly one behind the other, along a plane that they do not come near to, needs one list; a ball that comes the other way another one.
+static void who_moves_together_keeps_the_list(void **state)
+{
+    (void)state;
+    for (int meets = 0; meets < 2; ++meets)
+    {
+        pls_world_def def = pls_default_world_def(3);
+        def.dt = 1e-3;
+        def.skin = 0.5;
+        verify_scene s = verify_open(&def, "viscoelastic", elastic);
+        for (int k = 0; k < 10; ++k) verify_ball(&s, 1.0, 1.0, pls_vec(3.0 * k, 0.0, 5.0), pls_vec(2.0, 0.0, 0.0));
+        verify_wall(&s, pls_vec(0.0, 0.0, 0.0), pls_vec(0.0, 0.0, 1.0));
+        if (meets) verify_ball(&s, 1.0, 1.0, pls_vec(40.0, 0.0, 5.0), pls_vec(-2.0, 0.0, 0.0));
+        MUST(pls_world_run(s.world, 2780)); // a gap of 11 m closes with 4 m/s; a contact lasts for 70 ms
+        assert_true(meets ? verify_figures(s.world).list_builds > 1 : verify_figures(s.world).list_builds == 1);
+        assert_int_equal(verify_figures(s.world).touching, meets);
+        verify_close(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -239,6 +261,7 @@ int main(void)
         cmocka_unit_test(a_vanishing_skin_changes_no_bit_of_a_heap),
         cmocka_unit_test(a_driven_sphere_that_jumps_meets_what_is_there),
         cmocka_unit_test(a_driven_plane_that_jumps_meets_what_is_there),
+        cmocka_unit_test(who_moves_together_keeps_the_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
