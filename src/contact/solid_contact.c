@@ -23,6 +23,7 @@
 #include "contact/solid_contact.h"
 
 #include "contact/faces.h"
+#include "contact/overlap_record.h"
 
 #include <string.h>
 
@@ -114,7 +115,7 @@ static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t
     pair->tracked = bounds_overlap(&a, &b) && !(pair->lets_go && behind(list, pair));
     list->touch[c].delta = 0.0;
     if (pair->tracked)
-        pls_narrow_phase(&a, &b, options, &memory->state, &list->touch[c], counts);
+        pls_narrow_phase_from(&a, &b, options, &memory->state, &list->record[c], &list->touch[c], counts);
     else
         memset(&memory->state, 0, sizeof memory->state);
 }
