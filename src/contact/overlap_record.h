@@ -19,7 +19,7 @@
 #include "contact/narrow_phase.h"
 
 /// Most faces and vertices of a body that has records, and what a record has room for. All but the first are matters of topology, so that it never is a matter of history whether there is one.
-enum { PLS_RECORD_PLANES = 64, PLS_RECORD_VERTICES = 48, PLS_RECORD_CORNERS = 48, PLS_RECORD_TRIANGLES = 64 };
+enum { PLS_RECORD_PLANES = 64, PLS_RECORD_VERTICES = 56, PLS_RECORD_CORNERS = 64, PLS_RECORD_TRIANGLES = 96 };
 
 enum { PLS_CORNER_VERTEX, PLS_CORNER_CROSS, PLS_CORNER_LEAVE, PLS_CORNER_MEET, PLS_CORNER_KINDS };
 
