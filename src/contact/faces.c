@@ -307,10 +307,16 @@ static bool outline_is_listed(const pls_polytope *t, uint64_t faces, const uint3
     return false;
 }
 
-/// Where no point is common to all faces that depth counts from.
-static void add_seams(const pls_posed *a, const pls_posed *b, const slab *s, const pls_overlap_record *record, pls_overlap_integrals *out)
+/// The rest of energies where no point is common to all faces that depth counts from. Not `now`: when somebody looks, nobody does at each step.
+static void add_seams(const pls_posed *a, const pls_posed *b, const slab *s, const pls_overlap_record *record, bool now,
+                      pls_overlap_integrals *out)
 {
     if (record->apex[0].kind != PLS_NO_APEX && record->apex[1].kind != PLS_NO_APEX) return;
+    if (!now)
+    {
+        out->by_depth.energy = INFINITY;
+        return;
+    }
     pls_near_body near[2];
     take_both(a, b, s, &near[0], &near[1]);
     for (int k = 0; k < 2; ++k)
@@ -343,13 +349,13 @@ static bool by_record(const pls_posed *a, const pls_posed *b, const slab *s, boo
     if (record && record->known && !(high[0] & ~record->high[0]) && !(high[1] & ~record->high[1]) &&
         PLS_SIMD_SELECT(pls_overlap_recall)(&c, record, squares, out))
     {
-        add_seams(a, b, s, record, out);
+        add_seams(a, b, s, record, squares, out);
         return true;
     }
     for (int k = 0; k < (wall ? 1 : 2); ++k) some[k] = high_vertices(body[k], s->height[k], s->lowest[k] - record_slack * s->deep);
     pls_overlap_record now;
     if (!pls_overlap_find(&c, some, &now) || !PLS_SIMD_SELECT(pls_overlap_recall)(&c, &now, squares, out)) return false;
-    add_seams(a, b, s, &now, out);
+    add_seams(a, b, s, &now, squares || !record, out);
     if (record) *record = now;
     return true;
 }
