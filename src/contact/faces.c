@@ -108,16 +108,9 @@ static void take_faces(const pls_posed *p, pls_vec3 origin, pls_vec3 n, const do
 /// Heights of all vertices along n, margin included; the largest.
 static double take_heights(const pls_posed *p, pls_vec3 origin, pls_vec3 n, double *height)
 {
-    const pls_polytope *t = p->shape->polytope;
     const pls_vec3 own = pls_scale(pls_posed_turn_back(p, n), p->scale);
     const double start = pls_dot(pls_sub(p->position, origin), n) + p->shape->margin * p->scale;
-    double most = -INFINITY;
-    for (uint32_t v = 0; v < t->vertex_count; ++v)
-    {
-        height[v] = start + pls_dot(t->vertex[v], own);
-        most = height[v] > most ? height[v] : most;
-    }
-    return most;
+    return PLS_SIMD_SELECT(pls_overlap_heights)(p->shape->polytope, own, start, height);
 }
 
 /// The prism behind a facet, its front towards `centre`, its margin in front.
@@ -284,12 +277,10 @@ typedef struct slab
     double lowest[2], deep, size;
 } slab;
 
-/// Vertices above `lowest`.
+/// Vertices as high as `lowest`.
 static uint64_t high_vertices(const pls_posed *p, const double *height, double lowest)
 {
-    uint64_t high = 0;
-    for (uint32_t v = 0; v < p->shape->polytope->vertex_count; ++v) high |= (uint64_t)(height[v] >= lowest) << v;
-    return high;
+    return PLS_SIMD_SELECT(pls_overlap_high)(height, p->shape->polytope->vertex_count, lowest);
 }
 
 /// What of the two bodies matters. B of walls is known already.

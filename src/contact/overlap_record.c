@@ -293,7 +293,7 @@ static bool add_piece(finding *w, int body, int f, int g, const piece *p)
         if (w->name[number[k]] < w->name[number[first]]) first = k;
         meet_side(w, body, f, g, &p->at[k]);
     }
-    const int before = r->triangles[0] + r->triangles[1];
+    const int before = pls_record_first_triangle(r, body) + r->triangles[body];
     if (p->count < 3 || before + p->count - 2 > PLS_RECORD_TRIANGLES) return false;
     for (int k = 2; k < p->count; ++k)
     {
@@ -375,8 +375,12 @@ static void write_corners(finding *w)
             place[k] = (uint8_t)next++;
             ++r->corners[kind];
         }
-    for (int k = 0; k < r->triangles[0] + r->triangles[1]; ++k)
-        for (int v = 0; v < 3; ++v) r->triangle[k][v] = place[r->triangle[k][v]];
+    for (int body = 0; body < 2; ++body)
+    {
+        uint8_t(*triangle)[4] = r->triangle + pls_record_first_triangle(r, body);
+        for (int k = 0; k < r->triangles[body]; ++k)
+            for (int v = 0; v < 3; ++v) triangle[k][v] = place[triangle[k][v]];
+    }
 }
 
 /// Vertices that all planes seen of a body have, two at most.

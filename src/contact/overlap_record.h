@@ -19,7 +19,7 @@
 #include "contact/narrow_phase.h"
 
 /// Most faces and vertices of a body that has records, and what a record has room for. All but the first are matters of topology, so that it never is a matter of history whether there is one.
-enum { PLS_RECORD_PLANES = 64, PLS_RECORD_VERTICES = 56, PLS_RECORD_CORNERS = 64, PLS_RECORD_TRIANGLES = 96 };
+enum { PLS_RECORD_PLANES = 64, PLS_RECORD_VERTICES = 56, PLS_RECORD_CORNERS = 64, PLS_RECORD_TRIANGLES = 104 };
 
 enum { PLS_CORNER_VERTEX, PLS_CORNER_CROSS, PLS_CORNER_LEAVE, PLS_CORNER_MEET, PLS_CORNER_KINDS };
 
@@ -48,6 +48,9 @@ struct pls_overlap_record
     uint8_t from[PLS_RECORD_TRIANGLES];        ///< the plane nearest to it
 };
 
+/// Where the triangles of a surface begin: eight at a time are integrated, and places left over are triangles of nothing.
+static inline int pls_record_first_triangle(const pls_overlap_record *r, int body) { return body ? (r->triangles[0] + 7) & ~7 : 0; }
+
 /// The two bodies about an origin in the overlap.
 typedef struct pls_record_bodies
 {
@@ -70,6 +73,11 @@ bool pls_overlap_find(const pls_record_bodies *bodies, const uint64_t high[2], p
 /// The integrals, those by the depth's square if `squares`, energies without seams. False if the record does not fit.
 PLS_SIMD_DECLARE(bool, pls_overlap_recall, const pls_record_bodies *bodies, const pls_overlap_record *record, bool squares,
                  pls_overlap_integrals *out);
+
+/// Of each vertex start + own.vertex, and the largest of them; there is room for a multiple of eight, what is beyond the vertices is minus infinity.
+PLS_SIMD_DECLARE(double, pls_overlap_heights, const pls_polytope *polytope, pls_vec3 own, double start, double *height);
+/// Bit v: vertex v < 64 is as high as `lowest`.
+PLS_SIMD_DECLARE(uint64_t, pls_overlap_high, const double *height, uint32_t vertices, double lowest);
 
 static inline pls_vec3 pls_record_vertex(const pls_record_bodies *c, int body, int vertex)
 {

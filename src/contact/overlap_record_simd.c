@@ -22,6 +22,60 @@ typedef struct scene
 
 static inline pls_v4 row_of(pls_vec3 a, double last) { return (pls_v4){a.x, a.y, a.z, last}; }
 
+// ---- heights --------------------------------------------------------------------------------------------------------------------------------------------
+
+/// PLS_W points to columns.
+static inline void take_columns(const pls_vec3 *v, pls_vd column[3])
+{
+#if PLS_W == 8
+    pls_vd r[3];
+    memcpy(r, v, sizeof r);
+    const pls_vd a = __builtin_shufflevector(r[0], r[1], 0, 3, 6, 9, 12, 15, 0, 0);
+    const pls_vd b = __builtin_shufflevector(r[0], r[1], 1, 4, 7, 10, 13, 0, 0, 0);
+    const pls_vd c = __builtin_shufflevector(r[0], r[1], 2, 5, 8, 11, 14, 0, 0, 0);
+    column[0] = __builtin_shufflevector(a, r[2], 0, 1, 2, 3, 4, 5, 10, 13);
+    column[1] = __builtin_shufflevector(b, r[2], 0, 1, 2, 3, 4, 8, 11, 14);
+    column[2] = __builtin_shufflevector(c, r[2], 0, 1, 2, 3, 4, 9, 12, 15);
+#else
+    for (int k = 0; k < PLS_W; ++k) column[0][k] = v[k].x, column[1][k] = v[k].y, column[2][k] = v[k].z;
+#endif
+}
+
+double PLS_SIMD(pls_overlap_heights)(const pls_polytope *polytope, pls_vec3 own, double start, double *height)
+{
+    const uint32_t vertices = polytope->vertex_count, whole = vertices / PLS_W * PLS_W;
+    pls_vd highest = pls_vd_set(-INFINITY);
+    for (uint32_t v = 0; v < whole; v += PLS_W)
+    {
+        pls_vd x[3];
+        take_columns(polytope->vertex + v, x);
+        const pls_vd h = start + (x[0] * own.x + x[1] * own.y + x[2] * own.z);
+        highest = pls_vd_max(h, highest);
+        memcpy(height + v, &h, sizeof h);
+    }
+    double most = -INFINITY;
+    for (uint32_t v = whole; v < vertices; ++v)
+    {
+        height[v] = start + pls_dot(polytope->vertex[v], own);
+        most = height[v] > most ? height[v] : most;
+    }
+    for (uint32_t v = vertices; v & (LANES - 1); ++v) height[v] = -INFINITY;
+    for (int k = 0; k < PLS_W; ++k) most = highest[k] > most ? highest[k] : most;
+    return most;
+}
+
+uint64_t PLS_SIMD(pls_overlap_high)(const double *height, uint32_t vertices, double lowest)
+{
+    uint64_t low = 0;
+    for (uint32_t v = 0; v < vertices; v += PLS_W)
+    {
+        pls_vd h;
+        memcpy(&h, height + v, sizeof h);
+        low |= (uint64_t)pls_vd_less(h, pls_vd_set(lowest)) << v;
+    }
+    return ~low & (vertices < 64 ? ((uint64_t)1 << vertices) - 1 : ~(uint64_t)0);
+}
+
 // ---- planes and vertices --------------------------------------------------------------------------------------------------------------------------------
 
 static void place_planes(const pls_record_bodies *c, const pls_overlap_record *r, int body, scene *s)
@@ -163,16 +217,20 @@ typedef struct sums
     pls_vd of[PARTS][ROOM];
 } sums;
 
-static inline __attribute__((always_inline)) void add_wrench(pls_vd *of, const pls_vd n[3], pls_vd offset, pls_vd whole, pls_vd x, pls_vd y,
-                                                             pls_vd z)
+/// The first term or a further one of a sum.
+static inline __attribute__((always_inline)) void put(pls_vd *of, int k, bool first, pls_vd term) { of[k] = first ? term : of[k] + term; }
+
+static inline __attribute__((always_inline)) void add_wrench(pls_vd *of, bool first, const pls_vd n[3], pls_vd offset, pls_vd whole,
+                                                             pls_vd x, pls_vd y, pls_vd z)
 {
-    for (int a = 0; a < 3; ++a) of[a] += n[a] * whole;
-    of[3] += y * n[2] - z * n[1], of[4] += z * n[0] - x * n[2], of[5] += x * n[1] - y * n[0];
-    of[6] += offset * whole;
+    for (int a = 0; a < 3; ++a) put(of, a, first, n[a] * whole);
+    put(of, 3, first, y * n[2] - z * n[1]), put(of, 4, first, z * n[0] - x * n[2]), put(of, 5, first, x * n[1] - y * n[0]);
+    put(of, 6, first, offset * whole);
 }
 
 /// PLS_W triangles. Returns bits of those that lie the wrong way round.
-static inline __attribute__((always_inline)) unsigned integrate(const scene *s, const uint8_t (*triangle)[4], bool squares, pls_vd *of)
+static inline __attribute__((always_inline)) unsigned integrate(const scene *s, const uint8_t (*triangle)[4], bool squares, bool first,
+                                                                pls_vd *of)
 {
     pls_vd a[4], b[4], c[4], plane[4];
     pls_v4 row[4][PLS_W];
@@ -189,37 +247,39 @@ static inline __attribute__((always_inline)) unsigned integrate(const scene *s, 
     const pls_vd share = offset * twelfth;
     pls_vd sum[3], m[3];
     for (int k = 0; k < 3; ++k) sum[k] = a[k] + b[k] + c[k], m[k] = third * sum[k];
-    of[SURFACE] += area;
-    of[VOLUME] += offset * area;
+    put(of, SURFACE, first, area);
+    put(of, VOLUME, first, offset * area);
     for (int k = 0; k < 3; ++k)
     {
         const int i = k == 2 ? 1 : 0, j = k == 0 ? 1 : 2; // xy, xz, yz
-        of[FIRST + k] += offset * m[k];
-        of[SECOND + k] += share * (sum[k] * sum[k] + a[k] * a[k] + b[k] * b[k] + c[k] * c[k]);
-        of[SECOND + 3 + k] += share * (sum[i] * sum[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
-        of[AREA + k] += n[k] * area;
+        put(of, FIRST + k, first, offset * m[k]);
+        put(of, SECOND + k, first, share * (sum[k] * sum[k] + a[k] * a[k] + b[k] * b[k] + c[k] * c[k]));
+        put(of, SECOND + 3 + k, first, share * (sum[i] * sum[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]));
+        put(of, AREA + k, first, n[k] * area);
     }
-    of[MOMENT] += m[1] * n[2] - m[2] * n[1], of[MOMENT + 1] += m[2] * n[0] - m[0] * n[2], of[MOMENT + 2] += m[0] * n[1] - m[1] * n[0];
+    put(of, MOMENT, first, m[1] * n[2] - m[2] * n[1]), put(of, MOMENT + 1, first, m[2] * n[0] - m[0] * n[2]),
+        put(of, MOMENT + 2, first, m[0] * n[1] - m[1] * n[0]);
 
     const pls_vd d = p + q + r, once = third * d;
     const pls_vd u = twelfth * (d + p), v = twelfth * (d + q), w = twelfth * (d + r);
-    add_wrench(of + FORCE, n, offset, once, u * a[0] + v * b[0] + w * c[0], u * a[1] + v * b[1] + w * c[1], u * a[2] + v * b[2] + w * c[2]);
+    add_wrench(of + FORCE, first, n, offset, once, u * a[0] + v * b[0] + w * c[0], u * a[1] + v * b[1] + w * c[1],
+               u * a[2] + v * b[2] + w * c[2]);
     if (squares)
     {
         const pls_vd dd = d * d + (p * p + q * q + r * r), twice = twelfth * dd;
         const pls_vd f = sixtieth * (dd + 2.0 * p * (d + p)), g = sixtieth * (dd + 2.0 * q * (d + q)),
                      h = sixtieth * (dd + 2.0 * r * (d + r));
-        add_wrench(of + SQUARES, n, offset, twice, f * a[0] + g * b[0] + h * c[0], f * a[1] + g * b[1] + h * c[1],
+        add_wrench(of + SQUARES, first, n, offset, twice, f * a[0] + g * b[0] + h * c[0], f * a[1] + g * b[1] + h * c[1],
                    f * a[2] + g * b[2] + h * c[2]);
     }
     return pls_vd_less(area, pls_vd_set(0.0));
 }
 
 /// Lanes are added up in one order for all widths.
-static void add_lanes(const sums *s, double *total)
+static inline void add_lanes(const sums *s, int count, double *total)
 {
 #if PLS_W == LANES
-    for (int k = 0; k < ROOM; k += LANES)
+    for (int k = 0; k < count; k += LANES)
     {
         pls_vd r[LANES];
         for (int i = 0; i < LANES; ++i) r[i] = s->of[0][k + i];
@@ -227,7 +287,7 @@ static void add_lanes(const sums *s, double *total)
         pls_vd_store(total + k, ((r[0] + r[1]) + (r[2] + r[3])) + ((r[4] + r[5]) + (r[6] + r[7])));
     }
 #else
-    for (int k = 0; k < SUMS; ++k)
+    for (int k = 0; k < count; ++k)
     {
         double r[LANES];
         for (int i = 0; i < LANES; ++i) r[i] = s->of[i / PLS_W][k][i % PLS_W];
@@ -236,20 +296,22 @@ static void add_lanes(const sums *s, double *total)
 #endif
 }
 
+static inline __attribute__((always_inline)) unsigned integrate_eight(const scene *s, const uint8_t (*triangle)[4], bool squares,
+                                                                      bool first, sums *sum)
+{
+    unsigned wrong = 0;
+    for (int part = 0; part < PARTS; ++part) wrong |= integrate(s, triangle + part * PLS_W, squares, first, sum->of[part]);
+    return wrong;
+}
+
 /// All triangles of one surface. False if some lie the wrong way round.
 static inline __attribute__((always_inline)) bool integrate_all(const scene *s, const uint8_t (*triangle)[4], int count, bool squares,
                                                                 double *total)
 {
     sums sum;
-    memset(&sum, 0, sizeof sum);
-    unsigned wrong = 0;
-    for (int k = 0; k < count; k += LANES)
-    {
-        uint8_t eight[LANES][4] = {{0}}; // lanes without a triangle
-        memcpy(eight, triangle + k, (size_t)(count - k < LANES ? count - k : LANES) * sizeof *eight);
-        for (int part = 0; part < PARTS; ++part) wrong |= integrate(s, (const uint8_t(*)[4])eight + part * PLS_W, squares, sum.of[part]);
-    }
-    add_lanes(&sum, total);
+    unsigned wrong = integrate_eight(s, triangle, squares, true, &sum);
+    for (int k = LANES; k < count; k += LANES) wrong |= integrate_eight(s, triangle + k, squares, false, &sum);
+    add_lanes(&sum, squares ? SUMS : SQUARES, total);
     return wrong == 0;
 }
 
@@ -302,17 +364,17 @@ static void add_push(const double *total, double energy, double share, double si
 }
 
 /// Of the depth in the other body, and of its square.
-static void take_energies(const scene *s, const pls_overlap_record *r, int own, const double *total, double energy[2])
+static void take_energies(const scene *s, const pls_overlap_record *r, int own, bool squares, const double *total, double energy[2])
 {
     if (r->apex[1 - own].kind == PLS_NO_APEX)
     {
         double opposed[2];
-        without_apex(s, r, own ? r->triangles[0] : 0, r->triangles[own], opposed);
+        without_apex(s, r, pls_record_first_triangle(r, own), r->triangles[own], opposed);
         energy[0] = opposed[0] / 2.0, energy[1] = opposed[1] / 3.0;
         return;
     }
     const pls_vec3 apex = apex_of(r, 1 - own, s);
-    energy[0] = energy_about(total + FORCE, apex, 1), energy[1] = energy_about(total + SQUARES, apex, 2);
+    energy[0] = energy_about(total + FORCE, apex, 1), energy[1] = squares ? energy_about(total + SQUARES, apex, 2) : 0.0;
 }
 
 static void add_totals(const double *total, pls_overlap_integrals *out)
@@ -335,13 +397,13 @@ bool PLS_SIMD(pls_overlap_recall)(const pls_record_bodies *bodies, const pls_ove
     for (int own = 0; own < (bodies->wall ? 1 : 2); ++own)
     {
         const int other = 1 - own, count = record->triangles[own];
-        const uint8_t(*triangle)[4] = record->triangle + (own ? record->triangles[0] : 0);
+        const uint8_t(*triangle)[4] = record->triangle + pls_record_first_triangle(record, own);
         double total[ROOM] __attribute__((aligned(64)));
         if (!(squares ? integrate_all(&s, triangle, count, true, total) : integrate_all(&s, triangle, count, false, total))) return false;
         if (own == 0) out->area = vec_at(total + AREA), out->area_moment = vec_at(total + MOMENT);
         add_totals(total, out);
         double energy[2];
-        take_energies(&s, record, own, total, energy);
+        take_energies(&s, record, own, squares, total, energy);
         add_push(total + FORCE, energy[0], share, other ? 1.0 : -1.0, &out->by_depth);
         if (squares) add_push(total + SQUARES, energy[1], share, other ? 1.0 : -1.0, &out->by_its_square);
     }

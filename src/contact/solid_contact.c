@@ -412,8 +412,7 @@ static void answer(pls_solid_list *list, const pls_contact_input *in, const uint
 {
     if (count == 0) return;
     const pls_law *law = &in->laws->law[list->pair[batch[0]].law];
-    for (size_t k = 0; k < count; ++k)
-        frame_contact(list, in, batch[k], list->memory[batch[k]].touches != PLS_SOLID_TOUCHES, work, k);
+    for (size_t k = 0; k < count; ++k) frame_contact(list, in, batch[k], list->memory[batch[k]].touches != PLS_SOLID_TOUCHES, work, k);
     for (size_t k = count; k & 7; ++k) repeat_contact(law, count - 1, k, work);
     pls_contact_law(law, in->dt, (count + 7) / 8 * 8, work);
     bool any_area = false;
