@@ -4,7 +4,7 @@
 // smoothly, and both forces are the exact gradient of an energy, whatever touches: faces, edges or corners. With d the depth of a point under the surface of a body,
 //     W = integral over P of (d_A + d_B) / 2 dV,        which for parallel faces is the integral of t^2/2 dA, t their local overlap.
 // d is linear in each cell of a body (the points nearest to one of its faces) and continuous, so that force and torque are integrals over the surface of P, of polygons:
-// overlap_simd.c. (Clipping only the two most parallel faces along the normal of the penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to
+// overlap_simd.c; of polyhedra, whose polygons stay the same for many steps, overlap_record.h. (Clipping only the two most parallel faces along the normal of the penetration depth forgets that the overlap changes by sliding and turning: 1e-4 to
 // 2e-3 of energy lost or won at tilts of 0.01 to 0.1.)
 //
 // VOLUME    energy kn W/A0. Force kn V/A0 for faces, at the centroid of the overlap. Additive: parts of a compound and triangles of a wall push with what lies over them.
@@ -29,7 +29,7 @@
 
 #include "contact/faces.h"
 
-#include "contact/overlap.h"
+#include "contact/overlap_record.h"
 #include "shape/builtin.h"
 
 #include <string.h>
@@ -39,6 +39,12 @@ static const double least_depth = 1e-11;
 
 /// Of a body's size: faces this near to each other may count as one plane.
 static const double blur = 2e-15;
+
+/// Of a body's size: the conditions of a record hold by this at least, far above what rounding does to corners.
+static const double record_margin = 1e-9;
+
+/// Of the depth: faces are in a record from this much further down than need be, so that it lasts.
+static const double record_slack = 0.5;
 
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -102,16 +108,9 @@ static void take_faces(const pls_posed *p, pls_vec3 origin, pls_vec3 n, const do
 /// Heights of all vertices along n, margin included; the largest.
 static double take_heights(const pls_posed *p, pls_vec3 origin, pls_vec3 n, double *height)
 {
-    const pls_polytope *t = p->shape->polytope;
     const pls_vec3 own = pls_scale(pls_posed_turn_back(p, n), p->scale);
     const double start = pls_dot(pls_sub(p->position, origin), n) + p->shape->margin * p->scale;
-    double most = -INFINITY;
-    for (uint32_t v = 0; v < t->vertex_count; ++v)
-    {
-        height[v] = start + pls_dot(t->vertex[v], own);
-        most = height[v] > most ? height[v] : most;
-    }
-    return most;
+    return PLS_SIMD_SELECT(pls_overlap_heights)(p->shape->polytope, own, start, height);
 }
 
 /// The prism behind a facet, its front towards `centre`, its margin in front.
@@ -270,7 +269,90 @@ static void flatten(pls_overlap_integrals *P)
     P->first.z = 0.0;
 }
 
-static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
+/// The overlap as seen along the normal of touch: of A's and B's vertices the heights above the origin, towards the other body, and from where on faces matter.
+typedef struct slab
+{
+    pls_vec3 origin, n;
+    const double *height[2];
+    double lowest[2], deep, size;
+} slab;
+
+/// Vertices as high as `lowest`.
+static uint64_t high_vertices(const pls_posed *p, const double *height, double lowest)
+{
+    return PLS_SIMD_SELECT(pls_overlap_high)(height, p->shape->polytope->vertex_count, lowest);
+}
+
+/// What of the two bodies matters. B of walls is known already.
+static void take_both(const pls_posed *a, const pls_posed *b, const slab *s, pls_near_body *A, pls_near_body *B)
+{
+    // What reaches as deep as the other one's `lowest` lies in it at the most.
+    take_faces(a, s->origin, s->n, s->height[0], s->lowest[0] + s->deep, s->lowest[0], A);
+    if (s->height[1]) take_faces(b, s->origin, pls_scale(s->n, -1.0), s->height[1], s->lowest[1] + s->deep, s->lowest[1], B);
+}
+
+static bool outline_is_listed(const pls_polytope *t, uint64_t faces, const uint32_t *outline)
+{
+    for (; faces; faces &= faces - 1)
+        if (t->face_vertex + t->face_start[__builtin_ctzll(faces)] == outline) return true;
+    return false;
+}
+
+/// The rest of energies where no point is common to all faces that depth counts from. Not `now`: when somebody looks, nobody does at each step.
+static void add_seams(const pls_posed *a, const pls_posed *b, const slab *s, const pls_overlap_record *record, bool now,
+                      pls_overlap_integrals *out)
+{
+    if (record->apex[0].kind != PLS_NO_APEX && record->apex[1].kind != PLS_NO_APEX) return;
+    if (!now)
+    {
+        out->by_depth.energy = INFINITY;
+        return;
+    }
+    pls_near_body near[2];
+    take_both(a, b, s, &near[0], &near[1]);
+    for (int k = 0; k < 2; ++k)
+    {
+        if (record->apex[k].kind != PLS_NO_APEX) continue;
+        const pls_polytope *t = (k == 0 ? a : b)->shape->polytope;
+        int list[PLS_MOST_FACES], count = 0;
+        for (int f = 0; f < near[k].faces; ++f)
+            if (outline_is_listed(t, record->seen[k], near[k].face[f].outline)) list[count++] = f;
+        double seam[2];
+        PLS_SIMD_SELECT(pls_overlap_seams)(&near[k], list, count, &near[1 - k], 3, blur * s->size, seam);
+        out->by_depth.energy += 0.5 * seam[0] / 2.0, out->by_its_square.energy += 0.5 * seam[1] / 3.0;
+    }
+}
+
+/// The integrals by what the last step found of the faces, edges and corners about, or by what is found now. False if they do not tell.
+static bool by_record(const pls_posed *a, const pls_posed *b, const slab *s, bool squares, pls_overlap_record *record,
+                      pls_overlap_integrals *out)
+{
+    const bool wall = b->shape->ops->unbounded;
+    if (!pls_has_record(a->shape) || (!wall && !pls_has_record(b->shape))) return false;
+    const pls_posed *body[2] = {a, b};
+    pls_record_bodies c = {.body = {a, b}, .wall = wall, .front = pls_scale(s->n, -1.0), .margin = record_margin * s->size};
+    uint64_t high[2] = {0, 0}, some[2] = {0, 0};
+    for (int k = 0; k < (wall ? 1 : 2); ++k)
+    {
+        c.start[k] = pls_add(pls_sub(body[k]->position, s->origin), pls_scale(s->n, body[k]->shape->margin * body[k]->scale));
+        high[k] = high_vertices(body[k], s->height[k], s->lowest[k]);
+    }
+    if (record && record->known && !(high[0] & ~record->high[0]) && !(high[1] & ~record->high[1]) &&
+        PLS_SIMD_SELECT(pls_overlap_recall)(&c, record, squares, out))
+    {
+        add_seams(a, b, s, record, squares, out);
+        return true;
+    }
+    for (int k = 0; k < (wall ? 1 : 2); ++k) some[k] = high_vertices(body[k], s->height[k], s->lowest[k] - record_slack * s->deep);
+    pls_overlap_record now;
+    if (!pls_overlap_find(&c, some, &now) || !PLS_SIMD_SELECT(pls_overlap_recall)(&c, &now, squares, out)) return false;
+    add_seams(a, b, s, &now, squares || !record, out);
+    if (record) *record = now;
+    return true;
+}
+
+static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
+                        pls_overlap_record *record, pls_touch *out)
 {
     const bool plane = b->shape->ops->unbounded, facet = pls_is_facet(b->shape), flat = a->shape->dimension == 2;
     pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
@@ -300,15 +382,23 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
         reach_b = take_heights(b, origin, pls_scale(n, -1.0), height_b);
     const double reach_a = take_heights(a, origin, n, height_a), deep = reach_a + reach_b;
     if (!(deep > least_depth * a->size)) return false;
-    take_faces(a, origin, n, height_a, -reach_b, -reach_b - deep, &A);
-    if (!plane && !facet) take_faces(b, origin, pls_scale(n, -1.0), height_b, -reach_a, -reach_a - deep, &B);
-
-    pls_overlap_integrals P;
     const double size = plane ? a->size : fmax(a->size, b->size);
-    PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, blur * size, &P);
-    const pls_push *W = &P.by_depth, *Q = &P.by_its_square;
+    const bool squares = options->faces == PLS_FACES_MANIFOLD;
+    pls_overlap_integrals P;
+    const slab between = {.origin = origin,
+                          .n = n,
+                          .height = {height_a, plane || facet ? NULL : height_b},
+                          .lowest = {-reach_b - deep, -reach_a - deep},
+                          .deep = deep,
+                          .size = size};
+    if (facet || !by_record(a, b, &between, squares, record, &P))
+    {
+        take_both(a, b, &between, &A, &B);
+        PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, blur * size, &P);
+    }
     // Slivers that blur makes where sides only just do not overlap.
-    if (!(P.volume > 100.0 * blur * size * P.surface) || !(W->energy > 0.0) || !(Q->energy > 0.0)) return false;
+    if (!(P.volume > 100.0 * blur * size * P.surface) || !(P.by_depth.energy > 0.0)) return false;
+    if (squares && !(P.by_its_square.energy > 0.0)) return false;
     if (flat) flatten(&P);
     if (options->faces == PLS_FACES_VOLUME)
         volume_law(&P, options->face_area, out);
@@ -344,7 +434,8 @@ void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4])
     corner[1] = pls_scale(corner[0], -1.0), corner[3] = pls_scale(corner[2], -1.0);
 }
 
-bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
+bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
+                     pls_overlap_record *record, pls_touch *out)
 {
     double half[3];
     const bool plane = b->shape->ops->unbounded, wall = plane || pls_is_facet(b->shape);
@@ -358,7 +449,7 @@ bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
         else
             cap_law(a, half, pls_posed_gradient(b, b->position), b->position, options->face_area, out);
     }
-    else if (depth->delta <= 0.0 || !overlap_law(a, b, depth, options, out))
+    else if (depth->delta <= 0.0 || !overlap_law(a, b, depth, options, record, out))
         no_touch(depth, out);
     out->depth = depth->delta;
     return true;

@@ -13,7 +13,9 @@ enum { PLS_MOST_FACES = 256 };
 /// Faces have polyhedra, boxes, polygons and prisms of at most PLS_MOST_FACES faces, rounded ones only against walls: half-spaces, triangles, segments. For VOLUME on a
 /// half-space also sphere, disc, ellipsoid and ellipse.
 /// Gives the area of touch too (`spread`): that of the overlap, weighted by its thickness.
-bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out);
+/// `record` (null: none) spares work if it is still that of the last step; the answer does not depend on it, but that without one there always is an energy.
+bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
+                     pls_overlap_record *record, pls_touch *out);
 
 /// A triangle or segment of a wall: two faces back to back.
 static inline bool pls_is_facet(const pls_shape *s)

@@ -538,8 +538,8 @@ static void as_touch(const pls_depth *d, pls_touch *out)
                        .depth = d->delta};
 }
 
-void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state, pls_touch *out,
-                      pls_narrow_counts *counts)
+void pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state,
+                           pls_overlap_record *record, pls_touch *out, pls_narrow_counts *counts)
 {
     const bool admm = options->solver == PLS_SOLVER_ADMM && a->shape->convex && b->shape->convex;
     pls_pair_state none = {{0.0}};
@@ -550,6 +550,6 @@ void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_o
     as_touch(&d, out);
     // Where the pair has neither faces nor lines to speak of the point stands.
     if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return;
-    if (pls_faces_touch(a, b, &d, options, out) || pls_cylinder_on_plane(a, b, &d, options, out)) return;
+    if (pls_faces_touch(a, b, &d, options, record, out) || pls_cylinder_on_plane(a, b, &d, options, out)) return;
     pls_lines_touch(a, b, &d, out);
 }

@@ -58,4 +58,8 @@ typedef struct pls_overlap_integrals
 PLS_SIMD_DECLARE(void, pls_overlap_integrate, const pls_near_body *a, const pls_near_body *b, int dimension, double blur,
                  pls_overlap_integrals *out);
 
+/// Integrals of d^2 and d^3 over where the cells of two of the listed faces of `s` meet in the overlap, times the difference of their normals.
+PLS_SIMD_DECLARE(void, pls_overlap_seams, const pls_near_body *s, const int *list, int count, const pls_near_body *other, int dimension,
+                 double blur, double seam[2]);
+
 #endif

@@ -609,3 +609,12 @@ void PLS_SIMD(pls_overlap_integrate)(const pls_near_body *a, const pls_near_body
     add_pushes(&w, b, w.seen_b, a, &in_b, dimension, blur, share, 1.0, out);
     add_pushes(&w, a, w.seen_a, b, &in_a, dimension, blur, share, -1.0, out);
 }
+
+void PLS_SIMD(pls_overlap_seams)(const pls_near_body *s, const int *list, int count, const pls_near_body *other, int dimension, double blur,
+                                 double seam[2])
+{
+    work w;
+    w.batch.count = 0;
+    w.round = dimension == 2 ? 0.0 : 1.0;
+    add_seams(&w, s, list, count, other, blur, seam);
+}

@@ -23,6 +23,7 @@
 #include "contact/solid_contact.h"
 
 #include "contact/faces.h"
+#include "contact/overlap_record.h"
 
 #include <string.h>
 
@@ -49,24 +50,45 @@ static pls_vec3 shift_of(const pls_solid_pair *pair, const double edge[3])
     return pls_vec(pair->shift[0] * edge[0], pair->shift[1] * edge[1], pair->shift[2] * edge[2]);
 }
 
-static void pose_parts(const pls_solid_list *list, const pls_contact_input *in, size_t c, pls_posed *a, pls_posed *b)
+/// The two parts of a candidate where they are; kept in `own` unless the list has them.
+typedef struct parts
+{
+    const pls_posed *a, *b;
+    pls_posed own[2];
+} parts;
+
+static inline void pose_parts(const pls_solid_list *list, const pls_contact_input *in, size_t c, parts *out)
 {
     const pls_solid_pair *pair = &list->pair[c];
-    *a = pls_posed_part(&list->posed[pair->row_i], list->memory[c].part_i);
-    *b = pls_posed_part(&list->posed[pair->row_j], list->memory[c].part_j);
-    if (in->domain->any_periodic) b->position = pls_add(b->position, shift_of(pair, in->domain->edge));
+    out->a = &list->posed[pair->row_i], out->b = &list->posed[pair->row_j];
+    if (out->a->shape->part_count)
+    {
+        out->own[0] = pls_posed_part(out->a, list->memory[c].part_i);
+        out->a = &out->own[0];
+    }
+    if (!out->b->shape->part_count && !in->domain->any_periodic) return;
+    out->own[1] = pls_posed_part(out->b, list->memory[c].part_j);
+    out->b = &out->own[1];
+    if (in->domain->any_periodic) out->own[1].position = pls_add(out->b->position, shift_of(pair, in->domain->edge));
 }
 
 // ---- bounding volumes -------------------------------------------------------------------------------------------------------------------------------------
 
 static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
 
+/// Distance from an interval. (The library's fmax is a call.)
+static inline double outside(double x, double lower, double upper)
+{
+    const double below = lower - x, above = x - upper, more = below > above ? below : above;
+    return more > 0.0 ? more : 0.0;
+}
+
 /// Squared distance of a point from the box that bounds a part [m^2].
 static double outside_box(const pls_posed *p, pls_vec3 X)
 {
     const pls_vec3 own = pls_posed_own(p, X), lower = p->shape->lower, upper = p->shape->upper;
-    const double x = fmax(0.0, fmax(lower.x - own.x, own.x - upper.x)), y = fmax(0.0, fmax(lower.y - own.y, own.y - upper.y));
-    const double z = p->shape->dimension == 2 ? 0.0 : fmax(0.0, fmax(lower.z - own.z, own.z - upper.z));
+    const double x = outside(own.x, lower.x, upper.x), y = outside(own.y, lower.y, upper.y);
+    const double z = p->shape->dimension == 2 ? 0.0 : outside(own.z, lower.z, upper.z);
     return (x * x + y * y + z * z) * p->scale * p->scale;
 }
 
@@ -108,13 +130,13 @@ static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t
     pls_solid_pair *pair = &list->pair[c];
     pls_solid_memory *memory = &list->memory[c];
     const pls_narrow_options *options = &in->laws->law[pair->law].narrow;
-    pls_posed a, b;
-    pose_parts(list, in, c, &a, &b);
+    parts p;
+    pose_parts(list, in, c, &p);
     pair->ended = memory->touches == PLS_SOLID_TOUCHES; // until it is found to touch
-    pair->tracked = bounds_overlap(&a, &b) && !(pair->lets_go && behind(list, pair));
+    pair->tracked = bounds_overlap(p.a, p.b) && !(pair->lets_go && behind(list, pair));
     list->touch[c].delta = 0.0;
     if (pair->tracked)
-        pls_narrow_phase(&a, &b, options, &memory->state, &list->touch[c], counts);
+        pls_narrow_phase_from(p.a, p.b, options, &memory->state, &list->record[c], &list->touch[c], counts);
     else
         memset(&memory->state, 0, sizeof memory->state);
 }
@@ -192,10 +214,10 @@ static pls_vec3 tilt(pls_vec3 s, pls_vec3 n, pls_vec3 m)
     return pls_sub(s, pls_scale(pls_add(n, m), pls_dot(m, s) / along));
 }
 
-/// s turned about the unit vector n by an angle far below a radian.
-static pls_vec3 turn_about(pls_vec3 s, pls_vec3 n, double angle)
+/// s turned about the unit vector n by an angle of that sine and cosine, s at right angles to n.
+static pls_vec3 turn_about(pls_vec3 s, pls_vec3 n, double sine, double cosine)
 {
-    return pls_add(pls_scale(s, cos(angle)), pls_scale(pls_cross(n, s), sin(angle)));
+    return pls_add(pls_scale(s, cosine), pls_scale(pls_cross(n, s), sine));
 }
 
 static pls_vec3 tangential(pls_vec3 u, pls_vec3 n) { return pls_sub(u, pls_scale(n, pls_dot(u, n))); }
@@ -238,11 +260,11 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     const double length = pls_length(mid_n);
     mid_n = length > 1e-3 ? pls_scale(mid_n, 1.0 / length) : n;
     pls_vec3 u = pls_sub(pls_add(m.v_i, pls_cross(m.w_i, mid_i)), pls_add(m.v_j, pls_cross(m.w_j, mid_j)));
-    const double turned = 0.5 * in->dt * pls_dot(pls_add(m.w_i, m.w_j), n);
-    pls_vec3 step = turn_about(tilt(tangential(u, mid_n), mid_n, n), n, 0.5 * turned);
+    const double turned = 0.5 * in->dt * pls_dot(pls_add(m.w_i, m.w_j), n), sine = sin(0.5 * turned), cosine = cos(0.5 * turned);
+    pls_vec3 step = turn_about(tilt(tangential(u, mid_n), mid_n, n), n, sine, cosine);
     double since = in->dt; // a contact that begins within the step has had the time since touch only
     if (fresh && vn * in->dt > t->depth) since = t->depth / vn;
-    spring = pls_add(turn_about(tilt(spring, old_n, n), n, turned), pls_scale(step, since));
+    spring = pls_add(turn_about(tilt(spring, old_n, n), n, 2.0 * sine * cosine, 1.0 - 2.0 * sine * sine), pls_scale(step, since));
 
     pls_vec3 slip = tangential(v, n);
     if (lever > 0.0)
@@ -298,22 +320,46 @@ static void store_contact(pls_solid_list *list, const pls_contact_input *in, siz
     memory->lever = lever;
 }
 
-/// Candidate c as one of those whose rocking is damped: four contacts of the batch from `k`, of the normal alone.
-static void frame_corners(const pls_solid_list *list, const pls_contact_input *in, size_t c, double approach, pls_contact_work *work,
-                          size_t k)
+/// One that touches over an area: what resists its rocking.
+typedef struct rocking
+{
+    uint32_t candidate;
+    pls_vec3 turn;      ///< of i against j at the end of the step [rad/s]
+    pls_vec3 corner[4]; ///< pls_touch_corners
+} rocking;
+
+/// Contact `to` of the batch as contact `from`, for padding.
+static void repeat_contact(const pls_law *law, size_t from, size_t to, pls_contact_work *work)
+{
+    work->delta[to] = work->delta[from];
+    work->normal_velocity[to] = work->normal_velocity[from];
+    for (int a = 0; a < 3; ++a)
+    {
+        work->slip_velocity[a][to] = work->slip_velocity[a][from];
+        work->spring[a][to] = work->spring[a][from];
+    }
+    for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) work->history[h][to] = work->history[h][from];
+    if (!law->ops->needs_effective) return;
+    work->effective_radius[to] = work->effective_radius[from];
+    work->effective_mass[to] = work->effective_mass[from];
+}
+
+/// A candidate whose rocking is damped: four contacts of the batch from `k`, of the normal alone.
+static void frame_corners(const pls_solid_list *list, const pls_contact_input *in, uint32_t c, double approach, rocking *r,
+                          pls_contact_work *work, size_t k)
 {
     const pls_solid_pair *pair = &list->pair[c];
     const pls_touch *t = &list->touch[c];
-    const pair_motion m = motion_of(in, pair);
-    const pls_vec3 turn = pls_sub(m.end_w_i, m.end_w_j);
+    const pls_body_spin *i = &in->spin[pair->row_i], *j = &in->spin[pair->row_j];
     const bool needs_effective = in->laws->law[pair->law].ops->needs_effective;
     const double radius = needs_effective ? pls_solid_effective_radius(list, c) : 0.0;
-    pls_vec3 corner[4];
-    pls_touch_corners(t, corner);
+    r->candidate = c;
+    r->turn = pls_vec(i->end_x - j->end_x, i->end_y - j->end_y, i->end_z - j->end_z);
+    pls_touch_corners(t, r->corner);
     for (size_t p = 0; p < 4; ++p)
     {
         work->delta[k + p] = t->delta;
-        work->normal_velocity[k + p] = approach + pls_dot(pls_cross(turn, corner[p]), t->normal);
+        work->normal_velocity[k + p] = approach + pls_dot(pls_cross(r->turn, r->corner[p]), t->normal);
         for (int a = 0; a < 3; ++a) work->slip_velocity[a][k + p] = work->spring[a][k + p] = 0.0;
         for (int h = 0; h < PLS_LAW_MAX_HISTORY; ++h) work->history[h][k + p] = list->memory[c].history[h];
         if (!needs_effective) continue;
@@ -323,19 +369,17 @@ static void frame_corners(const pls_solid_list *list, const pls_contact_input *i
 }
 
 /// The couple of the four normal forces into the slot, and what it takes to the dashpots' power.
-static void store_rocking(pls_solid_list *list, const pls_contact_input *in, size_t c, const pls_contact_work *work, size_t k)
+static void store_rocking(pls_solid_list *list, const rocking *r, const pls_contact_work *work, size_t k)
 {
-    const pls_touch *t = &list->touch[c];
-    const pair_motion m = motion_of(in, &list->pair[c]);
-    pls_vec3 corner[4], couple = pls_vec(0.0, 0.0, 0.0); // on j
-    pls_touch_corners(t, corner);
+    const pls_vec3 normal = list->touch[r->candidate].normal;
+    pls_vec3 couple = pls_vec(0.0, 0.0, 0.0); // on j
     for (size_t p = 0; p < 4; p += 2)
     {
         const double differs = work->normal_force[k + p] - work->normal_force[k + p + 1];
-        couple = pls_add(couple, pls_scale(pls_cross(corner[p], t->normal), 0.25 * differs));
+        couple = pls_add(couple, pls_scale(pls_cross(r->corner[p], normal), 0.25 * differs));
     }
-    double *slot = list->slot + c * PLS_SOLID_SLOT;
-    const double power = pls_dot(couple, pls_sub(m.end_w_i, m.end_w_j));
+    double *slot = list->slot + r->candidate * PLS_SOLID_SLOT;
+    const double power = pls_dot(couple, r->turn);
     put3(slot + 4, pls_sub(of3(slot + 4), couple)), put3(slot + 12, pls_add(of3(slot + 12), couple));
     slot[3] += power, slot[11] += power;
 }
@@ -346,20 +390,20 @@ static void damp_rocking(pls_solid_list *list, const pls_contact_input *in, cons
 {
     enum { MOST = PLS_CONTACT_BLOCK / 4 };
     const pls_law *law = &in->laws->law[list->pair[batch[0]].law];
-    uint32_t chosen[MOST];
+    rocking chosen[MOST];
     for (size_t k = 0; k < count;)
     {
         size_t taken = 0;
         for (; k < count && taken < MOST; ++k)
         {
             if (pls_touch_is_point(&list->touch[batch[k]])) continue;
-            frame_corners(list, in, batch[k], approach[k], work, 4 * taken);
-            chosen[taken++] = batch[k];
+            frame_corners(list, in, batch[k], approach[k], &chosen[taken], work, 4 * taken);
+            ++taken;
         }
         if (taken == 0) return;
-        if (taken % 2) frame_corners(list, in, chosen[taken - 1], 0.0, work, 4 * taken); // padding
+        for (size_t p = 4 * taken; p & 7; ++p) repeat_contact(law, p - 4, p, work);
         pls_contact_law(law, in->dt, (4 * taken + 7) / 8 * 8, work);
-        for (size_t p = 0; p < taken; ++p) store_rocking(list, in, chosen[p], work, 4 * p);
+        for (size_t p = 0; p < taken; ++p) store_rocking(list, &chosen[p], work, 4 * p);
     }
 }
 
@@ -368,11 +412,8 @@ static void answer(pls_solid_list *list, const pls_contact_input *in, const uint
 {
     if (count == 0) return;
     const pls_law *law = &in->laws->law[list->pair[batch[0]].law];
-    for (size_t k = 0; k < (count + 7) / 8 * 8; ++k) // padding repeats the last
-    {
-        size_t c = batch[k < count ? k : count - 1];
-        frame_contact(list, in, c, list->memory[c].touches != PLS_SOLID_TOUCHES, work, k);
-    }
+    for (size_t k = 0; k < count; ++k) frame_contact(list, in, batch[k], list->memory[batch[k]].touches != PLS_SOLID_TOUCHES, work, k);
+    for (size_t k = count; k & 7; ++k) repeat_contact(law, count - 1, k, work);
     pls_contact_law(law, in->dt, (count + 7) / 8 * 8, work);
     bool any_area = false;
     for (size_t k = 0; k < count; ++k)
@@ -458,12 +499,12 @@ void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *in, const
 
 pls_touch pls_solid_touch_now(const pls_solid_list *list, const pls_contact_input *in, size_t c)
 {
-    pls_posed a, b;
+    parts p;
     pls_touch touch = {.delta = -INFINITY};
     pls_pair_state state = {{0.0}};
     pls_narrow_counts counts = {0};
-    pose_parts(list, in, c, &a, &b);
-    if (bounds_overlap(&a, &b)) pls_narrow_phase(&a, &b, &in->laws->law[list->pair[c].law].narrow, &state, &touch, &counts);
+    pose_parts(list, in, c, &p);
+    if (bounds_overlap(p.a, p.b)) pls_narrow_phase(p.a, p.b, &in->laws->law[list->pair[c].law].narrow, &state, &touch, &counts);
     return touch;
 }
 

@@ -8,6 +8,7 @@
 #include "base/alloc.h"
 #include "base/sort.h"
 #include "contact/contact_memory.h"
+#include "contact/overlap_record.h"
 #include "contact/sphere_contact.h"
 
 #include <stdlib.h>
@@ -97,6 +98,7 @@ static pls_status room_for(pls_solid_list *list, size_t count)
     PLS_TRY(pls_reallocate(&list->pair, capacity, wanted, sizeof *list->pair, "pairs of solids"));
     PLS_TRY(pls_reallocate(&list->memory, capacity, wanted, sizeof *list->memory, "pairs of solids"));
     PLS_TRY(pls_reallocate(&list->touch, capacity, wanted, sizeof *list->touch, "pairs of solids"));
+    PLS_TRY(pls_reallocate(&list->record, capacity, wanted, sizeof *list->record, "pairs of solids"));
     PLS_TRY(pls_reallocate(&list->slot, capacity * PLS_SOLID_SLOT, wanted * PLS_SOLID_SLOT, sizeof *list->slot, "pairs of solids"));
     list->capacity = wanted;
     return PLS_OK;
@@ -500,6 +502,7 @@ static pls_status build(pls_solid_list *list, const pls_solid_source *s, const p
     PLS_TRY(gather_rows(list, s->bodies->count));
     if (list->count > 0) memset(list->slot, 0, list->count * PLS_SOLID_SLOT * sizeof *list->slot);
     if (list->count > 0) memset(list->touch, 0, list->count * sizeof *list->touch);
+    for (size_t c = 0; c < list->count; ++c) list->record[c].known = 0;
     return PLS_OK;
 }
 
@@ -516,7 +519,8 @@ pls_status pls_solid_list_build(pls_solid_list *list, const pls_solid_source *so
 
 size_t pls_solid_list_bytes(const pls_solid_list *list)
 {
-    return list->capacity * (sizeof *list->pair + sizeof *list->memory + sizeof *list->touch + PLS_SOLID_SLOT * sizeof *list->slot) +
+    return list->capacity * (sizeof *list->pair + sizeof *list->memory + sizeof *list->touch + sizeof *list->record +
+                             PLS_SOLID_SLOT * sizeof *list->slot) +
            list->block_capacity * sizeof *list->block + list->entry_capacity * sizeof *list->entry;
 }
 
@@ -525,6 +529,7 @@ void pls_solid_list_free(pls_solid_list *list)
     pls_release(&list->pair);
     pls_release(&list->memory);
     pls_release(&list->touch);
+    pls_release(&list->record);
     pls_release(&list->slot);
     pls_release(&list->block);
     pls_release(&list->start);

@@ -74,6 +74,7 @@ typedef struct pls_solid_list
     pls_solid_memory *memory;
     pls_touch *touch; ///< of the last step
     double *slot;
+    pls_overlap_record *record; ///< of the overlap at the last step, or nothing; forgotten when the list is made
     size_t count, capacity;
     pls_solid_block *block;
     size_t block_count, block_capacity;

@@ -91,7 +91,8 @@ static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
                                .history = memory->history};
     law->ops->stiffness(law->constants, &point, &e->stiffness);
     e->stiffness.kn *= touch->weight; // of the approach; dashpots see that itself
-    point.delta = touch->energy_delta;
+    const pls_contact_input input = pls_contact_input_of(world, 0.0);
+    point.delta = isfinite(touch->energy_delta) ? touch->energy_delta : pls_solid_touch_now(list, &input, c).energy_delta;
     law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);
 }
 

@@ -125,25 +125,29 @@ pls_status pls_special_before(pls_world *world)
 static pls_vec3 divide(pls_vec3 a, const pls_body_mass *m) { return pls_vec(a.x / m->ix, a.y / m->iy, a.z / m->iz); }
 static pls_vec3 multiply(pls_vec3 a, const pls_body_mass *m) { return pls_vec(a.x * m->ix, a.y * m->iy, a.z * m->iz); }
 
-/// One rotation of the splitting: about principal axis `axis` for time h. `l` is the angular momentum in the body's frame.
-static void split_turn(pls_vec3 *l, pls_quat *q, const pls_body_mass *m, int axis, double h)
+/// One rotation of the splitting: about principal axis `i` for time h, those after it in turn being j and k. `l` is the angular momentum in the body's frame; as for `turn_to_world`
+/// sine and cosine count by their ratio alone.
+static inline void split_turn(double l[3], double q[4], const double moment[3], int i, int j, int k, double h)
 {
-    double angle = h * (axis == 0 ? l->x / m->ix : axis == 1 ? l->y / m->iy : l->z / m->iz);
-    pls_vec3 about = pls_vec(axis == 0 ? angle : 0.0, axis == 1 ? angle : 0.0, axis == 2 ? angle : 0.0);
-    pls_quat step = rotation_by(about);
-    *l = turn_to_body(step, *l);
-    *q = pls_quat_multiply(*q, step);
+    const double half = 0.5 * h * l[i] / moment[i], s = sin(half), c = cos(half), share = 2.0 * s / (c * c + s * s);
+    const double along = share * l[k], across = -share * l[j];
+    l[j] += c * along + s * across, l[k] += c * across - s * along;
+    const double w = q[0], x = q[1 + i], y = q[1 + j], z = q[1 + k];
+    q[0] = w * c - x * s, q[1 + i] = x * c + w * s;
+    q[1 + j] = y * c + z * s, q[1 + k] = z * c - y * s;
 }
 
 static void rotate_freely(pls_vec3 momentum, pls_quat *q, const pls_body_mass *m, double dt)
 {
-    pls_vec3 l = turn_to_body(*q, momentum);
-    split_turn(&l, q, m, 0, 0.5 * dt);
-    split_turn(&l, q, m, 1, 0.5 * dt);
-    split_turn(&l, q, m, 2, dt);
-    split_turn(&l, q, m, 1, 0.5 * dt);
-    split_turn(&l, q, m, 0, 0.5 * dt);
-    *q = pls_quat_unit(*q);
+    const pls_vec3 own = turn_to_body(*q, momentum);
+    const double moment[3] = {m->ix, m->iy, m->iz};
+    double l[3] = {own.x, own.y, own.z}, turn[4] = {q->w, q->x, q->y, q->z};
+    split_turn(l, turn, moment, 0, 1, 2, 0.5 * dt);
+    split_turn(l, turn, moment, 1, 2, 0, 0.5 * dt);
+    split_turn(l, turn, moment, 2, 0, 1, dt);
+    split_turn(l, turn, moment, 1, 2, 0, 0.5 * dt);
+    split_turn(l, turn, moment, 0, 1, 2, 0.5 * dt);
+    *q = pls_quat_unit((pls_quat){turn[0], turn[1], turn[2], turn[3]});
 }
 
 static pls_vec3 spin_of(pls_vec3 momentum, pls_quat q, const pls_body_mass *m)

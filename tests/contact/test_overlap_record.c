@@ -1,0 +1,158 @@
+// Records of overlaps: what is found from one that was kept is, bit for bit, what is found from scratch, on any instruction set.
+
+#include "contact/faces.h"
+#include "contact/overlap_record.h"
+#include "shape/builtin.h"
+#include "support/solids.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { STEPS = 400 };
+
+typedef struct tally
+{
+    int touching, kept, changed; ///< steps; those that end with a record; those that end with another one than they began with
+} tally;
+
+static pls_shape *random_shape(void)
+{
+    if (solids_uniform(0, 1) < 0.3) return solids_box(3, solids_uniform(0.2, 0.6), solids_uniform(0.2, 0.6), solids_uniform(0.2, 0.6), 0.0);
+    return solids_stone(3, 6 + (int)solids_uniform(0, 24), 0.0);
+}
+
+/// The touch with the record and without; the same.
+static bool ask(const pls_posed *a, const pls_posed *b, pls_faces faces, pls_overlap_record *record, int round, int step)
+{
+    const pls_depth d = solids_depth(a, b, NULL);
+    const pls_narrow_options options = solids_options(faces, 1.0);
+    pls_touch warm, cold;
+    memset(&warm, 0, sizeof warm), memset(&cold, 0, sizeof cold);
+    assert_true(pls_faces_touch(a, b, &d, &options, record, &warm) && pls_faces_touch(a, b, &d, &options, NULL, &cold));
+    if (isinf(warm.energy_delta)) warm.energy_delta = cold.energy_delta; // was not asked for
+    if (memcmp(&warm, &cold, sizeof warm) != 0)
+        fail_msg("round %d, step %d: a record changes the overlap %.17g to %.17g", round, step, cold.delta, warm.delta);
+    return warm.delta > 0.0;
+}
+
+/// B moves through A's rim and turns; now and then the record is lost.
+static void tumble(const pls_posed *a, const pls_shape *shape, pls_faces faces, double pace, int round, tally *t)
+{
+    const pls_vec3 axis = solids_direction(3), away = solids_direction(3), along = solids_direction(3);
+    const double gap = a->size + shape->radius, spin = solids_uniform(0.0, 8.0);
+    pls_overlap_record record;
+    memset(&record, 0, sizeof record);
+    for (int step = 0; step < STEPS; ++step)
+    {
+        const double time = pace * step / STEPS;
+        const double apart = gap * (0.95 - 0.35 * sin(M_PI * time));
+        const pls_vec3 place = pls_add(pls_scale(away, apart), pls_scale(along, 0.2 * gap * time));
+        const pls_posed b = pls_pose(shape, place, solids_turn(axis, spin * time), 1.0);
+        const pls_overlap_record before = record;
+        if (step % 97 == 96) memset(&record, 0, sizeof record);
+        if (!ask(a, &b, faces, &record, round, step)) continue;
+        ++t->touching;
+        t->kept += record.known;
+        t->changed += memcmp(&before, &record, sizeof record) != 0;
+    }
+}
+
+static void polyhedra_that_tumble_do_not_feel_records(void **state)
+{
+    (void)state;
+    solids_seed(31);
+    tally t = {0};
+    for (int round = 0; round < 120; ++round)
+    {
+        pls_shape *s = random_shape(), *other = random_shape();
+        const pls_posed a = pls_pose(s, pls_vec(0.1, 0.2, 0.3), solids_turn(solids_direction(3), solids_uniform(0, 6)), 1.0);
+        tumble(&a, other, round & 1 ? PLS_FACES_VOLUME : PLS_FACES_MANIFOLD, round % 3 ? 1.0 : 0.1, round, &t);
+        pls_shape_free(s), pls_shape_free(other);
+    }
+    print_message("%d touching, %d recorded, %d changed\n", t.touching, t.kept, t.changed);
+    assert_true(t.touching > 10000 && t.kept > 0.8 * t.touching && t.changed > 0.05 * t.touching && t.changed < 0.5 * t.touching);
+}
+
+static void polyhedra_on_a_half_space_do_not_feel_records(void **state)
+{
+    (void)state;
+    solids_seed(32);
+    pls_shape *floor = solids_plane(3);
+    int kept = 0, touching = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        pls_shape *s = round % 4 ? random_shape() : solids_stone(3, 20, 0.05);
+        const pls_posed wall = pls_pose(floor, pls_vec(0.1, 0.2, 0.3), solids_turn(solids_direction(3), 1.0), 1.0);
+        const pls_vec3 n = pls_posed_gradient(&wall, wall.position), axis = solids_direction(3);
+        pls_overlap_record record;
+        memset(&record, 0, sizeof record);
+        for (int step = 0; step < STEPS; ++step)
+        {
+            const double time = (double)step / STEPS, height = s->radius * (0.9 - 0.5 * sin(M_PI * time));
+            const pls_posed a = pls_pose(s, pls_add(wall.position, pls_scale(n, height)), solids_turn(axis, 3.0 * time), 1.0);
+            if (!ask(&a, &wall, round & 1 ? PLS_FACES_VOLUME : PLS_FACES_MANIFOLD, &record, round, step)) continue;
+            ++touching, kept += record.known;
+        }
+        pls_shape_free(s);
+    }
+    pls_shape_free(floor);
+    assert_true(touching > 5000 && kept > 0.9 * touching);
+}
+
+#if !defined(PLS_ISA_ONLY_GENERIC)
+/// Records of one instruction set and integrals of another.
+static void instruction_sets_give_the_same_bits(void **state)
+{
+    (void)state;
+    solids_seed(33);
+    int asked = 0;
+    for (int round = 0; round < 400; ++round)
+    {
+        pls_shape *s = random_shape(), *t = random_shape();
+        const pls_vec3 n = solids_direction(3);
+        const pls_posed a = pls_pose(s, pls_vec(0, 0, 0), solids_turn(solids_direction(3), 2.0), 1.0);
+        const pls_posed b = pls_pose(t, pls_scale(n, 0.75 * (s->radius + t->radius)), solids_turn(solids_direction(3), 4.0), 1.0);
+        const pls_depth d = solids_depth(&a, &b, NULL);
+        const pls_narrow_options options = solids_options(PLS_FACES_VOLUME, 1.0);
+        pls_overlap_record record;
+        memset(&record, 0, sizeof record);
+        pls_touch touch;
+        assert_true(pls_faces_touch(&a, &b, &d, &options, &record, &touch));
+        if (record.known)
+        {
+            const pls_vec3 origin = pls_scale(pls_add(d.on_a, d.on_b), 0.5);
+            const pls_record_bodies bodies = {
+                .body = {&a, &b}, .start = {pls_sub(a.position, origin), pls_sub(b.position, origin)}, .margin = 1e-9};
+            pls_overlap_integrals P[3];
+            memset(P, 0, sizeof P);
+            const int level = pls_isa_level();
+            assert_true(pls_overlap_recall_v2(&bodies, &record, true, &P[0]));
+            if (level > 0) assert_true(pls_overlap_recall_v3(&bodies, &record, true, &P[1]));
+            if (level > 0) assert_memory_equal(&P[0], &P[1], sizeof *P);
+            if (level > 1) assert_true(pls_overlap_recall_v4(&bodies, &record, true, &P[2]));
+            if (level > 1) assert_memory_equal(&P[0], &P[2], sizeof *P);
+            ++asked;
+        }
+        pls_shape_free(s), pls_shape_free(t);
+    }
+    assert_true(asked > 50);
+}
+#endif
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(polyhedra_that_tumble_do_not_feel_records),
+        cmocka_unit_test(polyhedra_on_a_half_space_do_not_feel_records),
+#if !defined(PLS_ISA_ONLY_GENERIC)
+        cmocka_unit_test(instruction_sets_give_the_same_bits),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
