@@ -130,8 +130,8 @@ static inline uint64_t not_deeper(const scene *s, int first, int count, pls_v4 x
     for (int k = 0; k < count; k += PLS_W)
     {
         const int at = first + k;
-        const pls_vd d = pls_vd_load(&s->offset[at]) - (pls_vd_load(&s->normal[0][at]) * x[0] + pls_vd_load(&s->normal[1][at]) * x[1] +
-                                                        pls_vd_load(&s->normal[2][at]) * x[2]);
+        pls_vd d = pls_vd_load(&s->offset[at]);
+        for (int a = 0; a < 3; ++a) d = pls_vd_less_product(pls_vd_load(&s->normal[a][at]), pls_vd_set(x[a]), d);
         bits |= (uint64_t)pls_vd_less(d, pls_vd_set(than)) << k;
     }
     return bits;
@@ -220,12 +220,26 @@ typedef struct sums
 /// The first term or a further one of a sum.
 static inline __attribute__((always_inline)) void put(pls_vd *of, int k, bool first, pls_vd term) { of[k] = first ? term : of[k] + term; }
 
-static inline __attribute__((always_inline)) void add_wrench(pls_vd *of, bool first, const pls_vd n[3], pls_vd offset, pls_vd whole,
-                                                             pls_vd x, pls_vd y, pls_vd z)
+static inline __attribute__((always_inline)) void put_product(pls_vd *of, int k, bool first, pls_vd x, pls_vd y)
 {
-    for (int a = 0; a < 3; ++a) put(of, a, first, n[a] * whole);
-    put(of, 3, first, y * n[2] - z * n[1]), put(of, 4, first, z * n[0] - x * n[2]), put(of, 5, first, x * n[1] - y * n[0]);
-    put(of, 6, first, offset * whole);
+    of[k] = first ? x * y : pls_vd_fma(x, y, of[k]);
+}
+
+/// u a + v b + w c.
+static inline __attribute__((always_inline)) pls_vd in_all(pls_vd u, pls_vd a, pls_vd v, pls_vd b, pls_vd w, pls_vd c)
+{
+    return pls_vd_fma(w, c, pls_vd_fma(v, b, u * a));
+}
+
+static inline __attribute__((always_inline)) void add_wrench(pls_vd *of, bool first, const pls_vd n[3], pls_vd offset, pls_vd whole,
+                                                             const pls_vd lever[3])
+{
+    for (int a = 0; a < 3; ++a)
+    {
+        put_product(of, a, first, n[a], whole);
+        put(of, 3 + a, first, pls_vd_cross(lever, n, a));
+    }
+    put_product(of, 6, first, offset, whole);
 }
 
 /// PLS_W triangles. Returns bits of those that lie the wrong way round.
@@ -241,36 +255,36 @@ static inline __attribute__((always_inline)) unsigned integrate(const scene *s, 
     }
     pls_columns4(row[0], a), pls_columns4(row[1], b), pls_columns4(row[2], c), pls_columns4(row[3], plane);
     const pls_vd *n = plane, offset = plane[3], p = a[3], q = b[3], r = c[3];
-    const pls_vd ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2], vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
-    const pls_vd area = 0.5 * (n[0] * (uy * vz - uz * vy) + n[1] * (uz * vx - ux * vz) + n[2] * (ux * vy - uy * vx));
+    const pls_vd e[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, g[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    const pls_vd twice_area[3] = {pls_vd_cross(e, g, 0), pls_vd_cross(e, g, 1), pls_vd_cross(e, g, 2)};
+    const pls_vd area = 0.5 * pls_vd_dot(n, twice_area);
     const pls_vd third = area * (1.0 / 3.0), twelfth = area * (1.0 / 12.0), sixtieth = area * (1.0 / 60.0);
     const pls_vd share = offset * twelfth;
     pls_vd sum[3], m[3];
     for (int k = 0; k < 3; ++k) sum[k] = a[k] + b[k] + c[k], m[k] = third * sum[k];
     put(of, SURFACE, first, area);
-    put(of, VOLUME, first, offset * area);
+    put_product(of, VOLUME, first, offset, area);
     for (int k = 0; k < 3; ++k)
     {
         const int i = k == 2 ? 1 : 0, j = k == 0 ? 1 : 2; // xy, xz, yz
-        put(of, FIRST + k, first, offset * m[k]);
-        put(of, SECOND + k, first, share * (sum[k] * sum[k] + a[k] * a[k] + b[k] * b[k] + c[k] * c[k]));
-        put(of, SECOND + 3 + k, first, share * (sum[i] * sum[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]));
-        put(of, AREA + k, first, n[k] * area);
+        put_product(of, FIRST + k, first, offset, m[k]);
+        put_product(of, SECOND + k, first, share, pls_vd_fma(sum[k], sum[k], in_all(a[k], a[k], b[k], b[k], c[k], c[k])));
+        put_product(of, SECOND + 3 + k, first, share, pls_vd_fma(sum[i], sum[j], in_all(a[i], a[j], b[i], b[j], c[i], c[j])));
+        put_product(of, AREA + k, first, n[k], area);
+        put(of, MOMENT + k, first, pls_vd_cross(m, n, k));
     }
-    put(of, MOMENT, first, m[1] * n[2] - m[2] * n[1]), put(of, MOMENT + 1, first, m[2] * n[0] - m[0] * n[2]),
-        put(of, MOMENT + 2, first, m[0] * n[1] - m[1] * n[0]);
 
     const pls_vd d = p + q + r, once = third * d;
     const pls_vd u = twelfth * (d + p), v = twelfth * (d + q), w = twelfth * (d + r);
-    add_wrench(of + FORCE, first, n, offset, once, u * a[0] + v * b[0] + w * c[0], u * a[1] + v * b[1] + w * c[1],
-               u * a[2] + v * b[2] + w * c[2]);
+    const pls_vd lever[3] = {in_all(u, a[0], v, b[0], w, c[0]), in_all(u, a[1], v, b[1], w, c[1]), in_all(u, a[2], v, b[2], w, c[2])};
+    add_wrench(of + FORCE, first, n, offset, once, lever);
     if (squares)
     {
-        const pls_vd dd = d * d + (p * p + q * q + r * r), twice = twelfth * dd;
-        const pls_vd f = sixtieth * (dd + 2.0 * p * (d + p)), g = sixtieth * (dd + 2.0 * q * (d + q)),
-                     h = sixtieth * (dd + 2.0 * r * (d + r));
-        add_wrench(of + SQUARES, first, n, offset, twice, f * a[0] + g * b[0] + h * c[0], f * a[1] + g * b[1] + h * c[1],
-                   f * a[2] + g * b[2] + h * c[2]);
+        const pls_vd dd = pls_vd_fma(d, d, in_all(p, p, q, q, r, r)), twice = twelfth * dd;
+        const pls_vd f = sixtieth * pls_vd_fma(p + p, d + p, dd), h = sixtieth * pls_vd_fma(q + q, d + q, dd),
+                     l = sixtieth * pls_vd_fma(r + r, d + r, dd);
+        const pls_vd further[3] = {in_all(f, a[0], h, b[0], l, c[0]), in_all(f, a[1], h, b[1], l, c[1]), in_all(f, a[2], h, b[2], l, c[2])};
+        add_wrench(of + SQUARES, first, n, offset, twice, further);
     }
     return pls_vd_less(area, pls_vd_set(0.0));
 }

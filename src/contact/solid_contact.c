@@ -24,6 +24,7 @@
 
 #include "contact/faces.h"
 #include "contact/overlap_record.h"
+#include "math/small_turn.h"
 
 #include <string.h>
 
@@ -260,7 +261,9 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     const double length = pls_length(mid_n);
     mid_n = length > 1e-3 ? pls_scale(mid_n, 1.0 / length) : n;
     pls_vec3 u = pls_sub(pls_add(m.v_i, pls_cross(m.w_i, mid_i)), pls_add(m.v_j, pls_cross(m.w_j, mid_j)));
-    const double turned = 0.5 * in->dt * pls_dot(pls_add(m.w_i, m.w_j), n), sine = sin(0.5 * turned), cosine = cos(0.5 * turned);
+    const double turned = 0.5 * in->dt * pls_dot(pls_add(m.w_i, m.w_j), n);
+    double sine, cosine;
+    pls_small_turn(0.5 * turned, &sine, &cosine);
     pls_vec3 step = turn_about(tilt(tangential(u, mid_n), mid_n, n), n, sine, cosine);
     double since = in->dt; // a contact that begins within the step has had the time since touch only
     if (fresh && vn * in->dt > t->depth) since = t->depth / vn;

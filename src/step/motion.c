@@ -9,6 +9,7 @@
 #include "step/world.h"
 
 #include "base/alloc.h"
+#include "math/small_turn.h"
 
 static pls_vec3 place_position(const pls_body_place *p) { return pls_vec(p->x, p->y, p->z); }
 
@@ -129,7 +130,9 @@ static pls_vec3 multiply(pls_vec3 a, const pls_body_mass *m) { return pls_vec(a.
 /// sine and cosine count by their ratio alone.
 static inline void split_turn(double l[3], double q[4], const double moment[3], int i, int j, int k, double h)
 {
-    const double half = 0.5 * h * l[i] / moment[i], s = sin(half), c = cos(half), share = 2.0 * s / (c * c + s * s);
+    double s, c;
+    pls_small_turn(0.5 * h * l[i] / moment[i], &s, &c);
+    const double share = 2.0 * s / (c * c + s * s);
     const double along = share * l[k], across = -share * l[j];
     l[j] += c * along + s * across, l[k] += c * across - s * along;
     const double w = q[0], x = q[1 + i], y = q[1 + j], z = q[1 + k];
