@@ -51,9 +51,10 @@ ALWAYS_INLINE void scatter(const void *keys, const uint32_t *values, void *to_ke
     }
 }
 
-ALWAYS_INLINE pls_status radix_sort(void *keys, uint32_t *values, size_t count, size_t width)
+/// `scratch`: room for `count` pairs, keys first, as they need the larger alignment.
+ALWAYS_INLINE void radix_sort(void *keys, uint32_t *values, size_t count, size_t width, char *scratch)
 {
-    if (count < 2) return PLS_OK;
+    if (count < 2) return;
     size_t histogram[8][DIGIT_VALUES] = {{0}};
     for (size_t i = 0; i < count; ++i)
     {
@@ -61,8 +62,6 @@ ALWAYS_INLINE pls_status radix_sort(void *keys, uint32_t *values, size_t count, 
         for (size_t digit = 0; digit < width; ++digit) ++histogram[digit][digit_of(key, digit)];
     }
 
-    char *scratch; // keys first, they need the larger alignment
-    PLS_TRY(pls_allocate(&scratch, count, width + sizeof *values, "the scratch of a sort"));
     void *from_keys = keys;
     uint32_t *from_values = values;
     void *to_keys = scratch;
@@ -83,13 +82,32 @@ ALWAYS_INLINE pls_status radix_sort(void *keys, uint32_t *values, size_t count, 
         memcpy(keys, from_keys, count * width);
         memcpy(values, from_values, count * sizeof *values);
     }
+}
+
+ALWAYS_INLINE pls_status sort_with_own_scratch(void *keys, uint32_t *values, size_t count, size_t width)
+{
+    if (count < 2) return PLS_OK;
+    char *scratch;
+    PLS_TRY(pls_allocate(&scratch, count, width + sizeof *values, "the scratch of a sort"));
+    radix_sort(keys, values, count, width, scratch);
     pls_release(&scratch);
     return PLS_OK;
 }
 
-pls_status pls_radix_sort_u64(uint64_t *keys, uint32_t *values, size_t count) { return radix_sort(keys, values, count, sizeof *keys); }
+pls_status pls_radix_sort_u64(uint64_t *keys, uint32_t *values, size_t count)
+{
+    return sort_with_own_scratch(keys, values, count, sizeof *keys);
+}
 
-pls_status pls_radix_sort_u32(uint32_t *keys, uint32_t *values, size_t count) { return radix_sort(keys, values, count, sizeof *keys); }
+pls_status pls_radix_sort_u32(uint32_t *keys, uint32_t *values, size_t count)
+{
+    return sort_with_own_scratch(keys, values, count, sizeof *keys);
+}
+
+void pls_radix_sort_u64_in(uint64_t *keys, uint32_t *values, size_t count, void *scratch)
+{
+    radix_sort(keys, values, count, sizeof *keys, scratch);
+}
 
 pls_status pls_prefix_sum_u32(uint32_t *counts, size_t count)
 {

@@ -1,4 +1,4 @@
-// cells.h -- space cut into equal cells, as many as there are bodies at most.
+// cells.h -- space cut into equal cells, about twice as many as there are bodies at most.
 //
 // The cells form a box of bounded size that wraps around where bodies reach further: a position far away shares a cell with others, so a body that flies away
 // harms nobody. Along periodic axes the cells divide the box evenly.

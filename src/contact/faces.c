@@ -335,7 +335,8 @@ static bool by_record(const pls_posed *a, const pls_posed *b, const slab *s, boo
     for (int k = 0; k < (wall ? 1 : 2); ++k)
     {
         c.start[k] = pls_add(pls_sub(body[k]->position, s->origin), pls_scale(s->n, body[k]->shape->margin * body[k]->scale));
-        high[k] = high_vertices(body[k], s->height[k], s->lowest[k]);
+        // A little more than can be nearest, so that no face without them comes near to being so: whoever keeps more faces sees the same.
+        high[k] = high_vertices(body[k], s->height[k], s->lowest[k] - 4.0 * c.margin);
     }
     if (record && record->known && !(high[0] & ~record->high[0]) && !(high[1] & ~record->high[1]) &&
         PLS_SIMD_SELECT(pls_overlap_recall)(&c, record, squares, out))

@@ -230,7 +230,7 @@ static int corner_of(const finding *w, int *body, int f, int g, const piece *p, 
     return PLS_CORNER_MEET;
 }
 
-/// How many of the numbers that name a corner are vertices; the rest are planes, the first `own` of them of the body itself.
+/// How many of the numbers that name a corner are vertices; the rest are planes, of the other body but for the first of `meet`.
 static int vertices_of(int kind) { return kind == PLS_CORNER_VERTEX ? 1 : kind == PLS_CORNER_MEET ? 0 : 2; }
 static int planes_of(int kind) { return kind == PLS_CORNER_MEET ? 4 : kind == PLS_CORNER_LEAVE ? 2 : 1; }
 

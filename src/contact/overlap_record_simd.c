@@ -323,6 +323,12 @@ static inline __attribute__((always_inline)) bool integrate_all(const scene *s, 
                                                                 double *total)
 {
     sums sum;
+    for (int part = 0; part < PARTS; ++part) sum.of[part][ROOM - 1] = pls_vd_set(0.0); // the last eight are added up whole
+    if (count == 0)                                                                    // all of the body lies in the other one, or nothing
+    {
+        memset(total, 0, ROOM * sizeof *total);
+        return true;
+    }
     unsigned wrong = integrate_eight(s, triangle, squares, true, &sum);
     for (int k = LANES; k < count; k += LANES) wrong |= integrate_eight(s, triangle + k, squares, false, &sum);
     add_lanes(&sum, squares ? SUMS : SQUARES, total);

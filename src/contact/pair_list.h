@@ -94,6 +94,7 @@ typedef struct pls_pair_list
     size_t slot_capacity;
     // of the sweep (sweep_plan.h)
     bool alone; ///< one thread has the whole list, so slots are used again
+    bool gone;  ///< the last sweep has left no forces in `slot`
     double *
         live; ///< slots of pairs of spheres from which bodies gather, PLS_SLOT each, and one that is always zero: `shared`, or those of `slot`
     size_t live_count;
@@ -112,10 +113,11 @@ typedef struct pls_pair_list
     double (*reference)[3]; ///< positions when it was made [m]
     double *reference_radius;
     size_t reference_capacity;
-    pls_moved_box *moved; ///< scratch of looks at how far bodies have moved (approach.c): those that keep the list allocate nothing
+    pls_moved_box
+        *moved; ///< scratch of looks at how far bodies have moved (approach.c): grown only where the space that bodies take up grows
     size_t moved_capacity;
     double skin;           ///< it was made with [m]
-    double drift;          ///< bound on how much two bodies can have come nearer since [m]
+    double drift;          ///< bound on how much two bodies that are not listed can have come nearer since [m]
     double image_drift;    ///< the part of it that a stretching box and turning walls make [m]
     double image_reach[3]; ///< how many edges lie between bodies of a listed pair, at most
     bool stale;

@@ -173,6 +173,7 @@ static pls_status place_slots(pls_pair_list *list, size_t rows, bool alone)
     else
         for (size_t e = 0; e < eights; ++e) list->place[e] = (uint32_t)e;
     list->alone = alone;
+    list->gone = false;
     list->live = alone ? list->shared : list->slot;
     memset(list->live + list->live_count * PLS_SLOT, 0, PLS_SLOT * sizeof *list->live);
     return PLS_OK;

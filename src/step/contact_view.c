@@ -198,6 +198,9 @@ pls_status pls_contact_view_make(const pls_world *world, pls_contact_view *view)
         PLS_TRY(pls_world_prepare((pls_world *)world)); // worlds are never constant themselves, only those who look are bound
     if (world->memory_holds)
         return pls_fail(PLS_INVALID_ARGUMENT, "bodies or laws have changed since the last step; contacts are known again after the next");
+    if (world->list.gone)
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "the last step did not end, so forces of contacts are not known; they are again after the next step");
     const size_t count = pls_pair_list_touching(&world->list) + pls_solid_list_touching(&world->solids);
     view_order order = {0};
     pls_status status = order_make(world, count, &order);

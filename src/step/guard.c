@@ -96,7 +96,18 @@ static bool overlap_is_due(const pls_world *world)
     return world->path >= world->overlap_due || world->state_count > 0; // states may change radii
 }
 
-bool pls_guard_is_due(const pls_world *world) { return overlap_is_due(world) || world->path >= world->lost_due || world->solids.count > 0; }
+/// Walls of pieces have to fit a box that changes.
+static bool walls_are_due(const pls_world *world)
+{
+    for (int a = 0; a < 3; ++a)
+        if (world->solids.wall_length[a] > 0.0 && world->domain.edge_rate[a] != 0.0) return true;
+    return false;
+}
+
+bool pls_guard_is_due(const pls_world *world)
+{
+    return overlap_is_due(world) || world->path >= world->lost_due || world->solids.count > 0 || walls_are_due(world);
+}
 
 static pls_status overlap_of_balls(pls_world *world)
 {

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "base/sort.h"
 #include "contact/approach.h"
 #include "contact/broad_phase.h"
@@ -211,6 +212,7 @@ bool pls_neighbours_hold(const pls_world *world) { return !world->list.stale && 
 pls_status pls_neighbours_refresh(pls_world *world)
 {
     pls_pair_list *list = &world->list;
+    if (list->alone && pls_threads() > 1) list->stale = true; // was made for one thread
     if (pls_neighbours_hold(world)) return PLS_OK;
     if (!list->stale)
     {

@@ -149,8 +149,10 @@ static pls_status bring_together(pls_world *world, size_t count)
 }
 
 /// The order in which they are booked. Their numbers, cold memory, are asked for in one go here.
-static pls_status order_parted(const pls_bodies *bodies, const pls_parted_list *all, uint64_t *key, uint32_t *order)
+static void order_parted(const pls_bodies *bodies, const pls_parted_list *all, const pls_parted_order *sorted)
 {
+    uint64_t *key = sorted->key;
+    uint32_t *order = sorted->place;
     for (size_t k = 0; k < all->count; ++k)
     {
         struct pls_parted *p = &all->entry[k];
@@ -158,7 +160,7 @@ static pls_status order_parted(const pls_bodies *bodies, const pls_parted_list *
         key[k] = key_of(p);
         order[k] = (uint32_t)k;
     }
-    if (all->count > FEW_PARTED) PLS_TRY(pls_radix_sort_u64(key, order, all->count));
+    if (all->count > FEW_PARTED) pls_radix_sort_u64_in(key, order, all->count, sorted->scratch);
     for (size_t k = 1; k < all->count; ++k) // few, or in order but for several parts of two bodies
     {
         const uint32_t moving = order[k];
@@ -166,7 +168,6 @@ static pls_status order_parted(const pls_bodies *bodies, const pls_parted_list *
         for (; m > 0 && comes_before(&all->entry[moving], &all->entry[order[m - 1]]); --m) order[m] = order[m - 1];
         order[m] = moving;
     }
-    return PLS_OK;
 }
 
 pls_status pls_book_parted(pls_world *world)
@@ -182,9 +183,10 @@ pls_status pls_book_parted(pls_world *world)
         const size_t grown = count + count / 2;
         PLS_TRY(pls_reallocate(&sorted->key, sorted->capacity, grown, sizeof *sorted->key, "contacts that ended"));
         PLS_TRY(pls_reallocate(&sorted->place, sorted->capacity, grown, sizeof *sorted->place, "contacts that ended"));
+        PLS_TRY(pls_reallocate(&sorted->scratch, sorted->capacity, grown, PLS_SORT_SCRATCH, "contacts that ended"));
         sorted->capacity = grown;
     }
-    PLS_TRY(order_parted(&world->bodies, all, sorted->key, sorted->place));
+    order_parted(&world->bodies, all, sorted);
     for (size_t k = 0; k < count; ++k)
     {
         const struct pls_parted *p = &all->entry[sorted->place[k]];
@@ -201,5 +203,6 @@ void pls_parted_free(pls_world *world)
     pls_release(&world->parted);
     pls_release(&world->parted_order.key);
     pls_release(&world->parted_order.place);
+    pls_release(&world->parted_order.scratch);
     world->parted_order.capacity = 0;
 }

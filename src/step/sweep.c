@@ -335,6 +335,13 @@ static void collect(sweep *s, share *mine)
     }
 }
 
+/// Whether contacts can be looked at after the step that is about to be swept.
+static void note_kept(sweep *s)
+{
+    s->input.kept = !s->go_on;
+    s->world->list.gone = s->world->list.alone && !s->input.kept;
+}
+
 static pls_status book_sweep(sweep *s)
 {
     PLS_TRY(pls_book_parted(s->world));
@@ -357,7 +364,7 @@ static void close_sweep(sweep *s)
     s->time = (double)(world->step + 1) * world->dt;
     pls_domain_at(&world->domain, s->time);
     s->go_on = may_go_on(world, s->end);
-    s->input.kept = !s->go_on;
+    note_kept(s);
     s->total = (pls_drift_report){0.0, 0.0};
 }
 
@@ -392,7 +399,7 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     s.contact_block = PLS_SIMD_SELECT(pls_contact_block);
     s.time = dt > 0.0 ? (double)(world->step + 1) * dt : world->time;
     s.go_on = may_go_on(world, end);
-    s.input.kept = !s.go_on;
+    note_kept(&s);
     for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
     pls_barrier_init(&s.walls_known);
     pls_barrier_init(&s.contacts_known);

@@ -5,7 +5,7 @@
 #include "step/world.h"
 
 enum {
-    PLS_GUARD_STEPS = 64,   ///< steps between looks at overlaps and lost bodies
+    PLS_GUARD_STEPS = 64,   ///< steps between looks at overlaps and lost bodies, at least: looks that cannot find anything are left out
     PLS_STABLE_STEPS = 4096 ///< steps between looks at the stable step; a multiple of the former
 };
 

@@ -86,6 +86,7 @@ typedef struct pls_parted_order
 {
     uint64_t *key;
     uint32_t *place; ///< in the list
+    char *scratch;   ///< of the sort
     size_t capacity;
 } pls_parted_order;
 

@@ -105,6 +105,49 @@ static void polyhedra_on_a_half_space_do_not_feel_records(void **state)
     assert_true(touching > 5000 && kept > 0.9 * touching);
 }
 
+/// A plate wholly below the top of a block, whose bottom is flat, or round and so of more corners than a record holds: what lies below does not matter, and neither does the way
+/// it is found. Either body first.
+static void a_plate_within_a_block_is_found_alike(void **state)
+{
+    (void)state;
+    pls_vec3 points[4 + 100] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    for (int k = 0; k < 100; ++k)
+    {
+        const double height = -0.5 - 0.5 * k / 99.0, angle = 2.4 * k, radius = 1.45 * sqrt(1.0 - 0.9 * (k / 99.0) * (k / 99.0));
+        points[4 + k] = pls_vec(radius * cos(angle), radius * sin(angle), height);
+    }
+    pls_shape *round_block = solids_hull(3, points, 104, 0.0);
+    pls_vec3 corners[8];
+    for (int k = 0; k < 8; ++k) corners[k] = pls_vec(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 0 : -1);
+    pls_shape *block = solids_hull(3, corners, 8, 0.0), *plate = solids_box(3, 0.3, 0.2, 0.02, 0.0);
+    assert_true(pls_has_record(block) && !pls_has_record(round_block));
+    for (int order = 0; order < 2; ++order)
+        for (int faces = 0; faces < 2; ++faces)
+        {
+            pls_touch touch[2];
+            memset(touch, 0, sizeof touch);
+            for (int k = 0; k < 2; ++k)
+            {
+                const pls_shape *s = k ? round_block : block;
+                const pls_quat tilt = solids_turn(pls_vec(0.6, 0.8, 0.0), 0.05);
+                const pls_posed b = pls_pose(s, s->mass.centre, s->principal, 1.0);
+                const pls_posed p = pls_pose(plate, pls_vec(0.01, 0.02, -0.06), pls_quat_multiply(tilt, plate->principal), 1.0);
+                const pls_posed *first = order ? &p : &b, *second = order ? &b : &p;
+                const pls_depth d = solids_depth(first, second, NULL);
+                const pls_narrow_options options = solids_options(faces ? PLS_FACES_VOLUME : PLS_FACES_MANIFOLD, 1.0);
+                pls_overlap_record record;
+                memset(&record, 0, sizeof record);
+                assert_true(pls_faces_touch(first, second, &d, &options, &record, &touch[k]));
+            }
+            print_message("delta %.15g %.15g, normal z %.15g %.15g\n", touch[0].delta, touch[1].delta, touch[0].normal.z,
+                          touch[1].normal.z);
+            assert_true(fabs(touch[0].delta - touch[1].delta) < 1e-9 * touch[1].delta);
+            assert_true(pls_length(pls_sub(touch[0].normal, touch[1].normal)) < 1e-9);
+            assert_true(pls_length(pls_sub(touch[0].point, touch[1].point)) < 1e-9);
+        }
+    pls_shape_free(round_block), pls_shape_free(block), pls_shape_free(plate);
+}
+
 #if !defined(PLS_ISA_ONLY_GENERIC)
 /// Records of one instruction set and integrals of another.
 static void instruction_sets_give_the_same_bits(void **state)
@@ -150,6 +193,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(polyhedra_that_tumble_do_not_feel_records),
         cmocka_unit_test(polyhedra_on_a_half_space_do_not_feel_records),
+        cmocka_unit_test(a_plate_within_a_block_is_found_alike),
 #if !defined(PLS_ISA_ONLY_GENERIC)
         cmocka_unit_test(instruction_sets_give_the_same_bits),
 #endif
