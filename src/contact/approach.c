@@ -135,8 +135,7 @@ static double of_half_space(const pls_pair_list *list, const pls_bodies *bodies,
 {
     const pls_vec3 n = pls_wall_normal(&bodies->orientation[wall], domain->dimension);
     const pls_body_place *w = &bodies->place[wall];
-    const pls_body_spin *spin = &bodies->spin[wall];
-    if (spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0 || (bodies->kind[wall].flags & PLS_BODY_SPECIAL)) return 0.0;
+    if (pls_wall_sweeps(bodies, wall)) return 0.0;
     double v[3], least = list->skin;
     displacement(list, bodies, wall, v);
     for (size_t row = 0; row < bodies->count; ++row)

@@ -32,7 +32,7 @@ typedef struct pls_touch
         [6]; ///< second moments of the area (line) of touch about its middle, by the area (length): xx, yy, zz, xy, xz, yz; all 0: a point [m^2]
 } pls_touch;
 
-/// What a pair may keep beside its state, for speed alone: no answer depends on it, and it may be lost any time. All zero: nothing (overlap_record.h).
+/// What a pair may keep beside its state, for speed alone: no answer depends on it but for `energy_delta`, which may be left out (faces.h), and it may be lost any time. All zero: nothing (overlap_record.h).
 typedef struct pls_overlap_record pls_overlap_record;
 
 /// One contact. The answer depends on poses, options and state only. Half-spaces come as B.

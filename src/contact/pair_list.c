@@ -91,9 +91,7 @@ static pls_status one_wall(pls_pair_list *list, const pls_bodies *bodies, const 
 {
     pls_vec3 n = pls_wall_normal(&bodies->orientation[wall], domain->dimension);
     const pls_body_place *w = &bodies->place[wall];
-    const pls_body_spin *spin = &bodies->spin[wall];
-    // A turning wall sweeps far points quickly; keep every body in its list then.
-    if (spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0 || (bodies->kind[wall].flags & PLS_BODY_SPECIAL)) gap = INFINITY;
+    if (pls_wall_sweeps(bodies, wall)) gap = INFINITY;
     for (size_t law = 0; law < laws->law_count; ++law)
     {
         size_t first = found->count;

@@ -275,10 +275,8 @@ static pls_status one_half_space(pls_solid_list *list, const pls_solid_source *s
 {
     const pls_bodies *b = s->bodies;
     const pls_body_place *w = &b->place[wall];
-    const pls_body_spin *spin = &b->spin[wall];
     const pls_vec3 n = pls_wall_normal(&b->orientation[wall], s->domain->dimension);
-    double gap = s->gap;
-    if (spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0 || (b->kind[wall].flags & PLS_BODY_SPECIAL)) gap = INFINITY;
+    const double gap = pls_wall_sweeps(b, wall) ? INFINITY : s->gap;
     for (uint32_t row = 0; row < b->count; ++row)
     {
         const pls_body_place *p = &b->place[row];

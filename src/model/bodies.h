@@ -139,6 +139,13 @@ typedef struct pls_bodies
 
 #define PLS_NO_ROW UINT32_MAX
 
+/// A half-space that turns, or may: far points of it move quickly, so all bodies are in its list, and looks that count on small displacements leave it out.
+static inline bool pls_wall_sweeps(const pls_bodies *bodies, size_t wall)
+{
+    const pls_body_spin *spin = &bodies->spin[wall];
+    return spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0 || (bodies->kind[wall].flags & PLS_BODY_SPECIAL);
+}
+
 pls_status pls_bodies_reserve(pls_bodies *bodies, size_t count);
 /// A new zeroed row with the smallest free number; `*row` is its place.
 pls_status pls_bodies_add(pls_bodies *bodies, uint32_t *row);

@@ -78,10 +78,7 @@ static size_t first_runaway(const pls_world *world, const pls_pair_section *sect
 /// Whether what bodies do to each other in a section may change by more than they move: they dive up behind a wall, or it turns.
 static bool surprises(const pls_world *world, const pls_pair_section *section)
 {
-    if (!section->wall) return false;
-    const pls_body_spin *spin = &world->bodies.spin[section->wall_row];
-    const bool turns = spin->wx != 0.0 || spin->wy != 0.0 || spin->wz != 0.0;
-    return turns || section->depth < INFINITY || (world->bodies.kind[section->wall_row].flags & PLS_BODY_SPECIAL);
+    return section->wall && (section->depth < INFINITY || pls_wall_sweeps(&world->bodies, section->wall_row));
 }
 
 static double smallest_radius(const pls_bodies *b)
