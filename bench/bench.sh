@@ -55,7 +55,7 @@ fi
 
 # What is measured: the commit, and whether the tree differs from it in more than what this script writes.
 commit=$(git -C "$root" log -1 --format=', commit %h' 2>/dev/null) || true
-changes=$(git -C "$root" status --porcelain -- "$root" ":(exclude,top)docs/performance.md" ":(exclude,top,glob)docs/figures/bench-*" 2>/dev/null) || true
+changes=$(git -C "$root" status --porcelain -- "$root" ":(exclude,top)docs/performance.md" ":(exclude,top)bench/machines.tsv" ":(exclude,top,glob)docs/figures/bench-*" 2>/dev/null) || true
 [ -z "$changes" ] || commit+=" with uncommitted changes"
 
 scratch=$(mktemp -d)
@@ -188,7 +188,7 @@ compiler=$(sed -n 's/^CMAKE_C_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
 cat >"$results/machine.tsv" <<TEXT
 date	$(date -u +%Y-%m-%d)
 took	$((SECONDS - start)) s
-processor	$(LC_ALL=C lscpu | sed -n 's/^Model name: *//p' | head -1), $(nproc) processors online, instruction sets measured: ${isas[*]}
+processor	$(LC_ALL=C lscpu | awk -F ': *' '/^Model name:/ { name = $2 } /^CPU family:/ { family = $2 } /^Model:/ { model = $2 } END { printf "%s (family %s model %s)", name, family, model }'), $(nproc) processors online, instruction sets measured: ${isas[*]}
 caches	$(LC_ALL=C lscpu | sed -n 's/^\(L[1-3][di]*\) cache: */\1 /p' | paste -sd ',' | sed 's/,/, /g')
 memory	$(awk '/^MemTotal/ { printf "%.1f GiB", $2 / 1048576 }' /proc/meminfo)
 kernel	$(uname -sr)
@@ -200,7 +200,9 @@ Yade	$(if [ $yade = 1 ]; then yade --version 2>/dev/null | sed -n 's/^Yade versi
 TEXT
 
 status=0
-python3 "$here/page.py" "$results" "$here/performance_notes.md" >"$scratch/page.md" 2>"$scratch/errors" || { status=1; failed "page.py"; }
+machines=()
+[ $quick = 1 ] || machines=("$here/machines.tsv")
+python3 "$here/page.py" "$results" "$here/performance_notes.md" "${machines[@]}" >"$scratch/page.md" 2>"$scratch/errors" || { status=1; failed "page.py"; }
 gnuplot -e "data='$results'; out='$figures'" "$here/figures.gp" 2>"$scratch/errors" || { status=1; failed "figures.gp"; }
 cp "$scratch/page.md" "$page"
 [ ! -s "$results/failures.txt" ] || status=1

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the page of `make bench` to standard output and the figures' data beside the measurements: page.py <results folder> <notes>.
+"""Writes the page of `make bench` to standard output and the figures' data beside the measurements: page.py <results folder> <notes> [machines].
+
+`machines` is a table of the main ratios, a row per processor: this processor's row is made anew in it, and the page shows them all.
 
 Exit status 1 when runs that must agree do not: the state's hash on any instruction set and number of threads.
 """
@@ -173,6 +175,25 @@ def settling(results):
     table(["", "grains", "rounds", "contacts per grain", "particle-steps/s", "us per contact and step", "ratio (median)", "least to most"], rows)
 
 
+MACHINES = ("processor", "date", "particls", "16,500 spheres, AVX-512", "AVX2", "a million, AVX-512", "two threads, 16,500", "polyhedra against Yade")
+
+
+def machines(results, path):
+    """The main ratios, median and range over the rounds, on each processor that was measured."""
+    facts = dict(line.split("\t", 1) for line in (results / "machine.tsv").read_text().splitlines())
+    row = [facts["processor"].split(",")[0], facts["date"], facts["particls"]]
+    for case, program, reference in (("example", "particls-v4", "lammps"), ("example", "particls-v3", "lammps"), ("large", "particls-v4", "lammps"),
+                                     ("threads", "particls-2", "particls-1"), ("settling", "particls", "yade")):
+        lines = load(results, case)
+        median, span = ratio(speeds(lines, program), speeds(lines, reference))
+        row.append(median if median == "-" else f"{median} ({span})")
+    rows = [line.split("\t") for line in path.read_text().splitlines()[1:]] if path.exists() else []
+    rows = sorted([other for other in rows if other[0] != row[0]] + [row])
+    path.write_text("".join("\t".join(line) + "\n" for line in [MACHINES, *rows]))
+    print("## On every processor so far\n\nThe main ratios, to LAMMPS for spheres, as the last `make bench` on each left them (`bench/machines.tsv`).\n")
+    table(MACHINES, rows)
+
+
 def differing(results):
     """Cases whose runs end in different states."""
     groups = {}
@@ -208,6 +229,8 @@ def main():
         print()
     else:
         print(f"All runs went through. In each of {len(groups)} jobs every run ended in the same state, bit for bit, on any instruction set and number of threads.\n")
+    if len(sys.argv) > 3:
+        machines(results, pathlib.Path(sys.argv[3]))
     print("## Uniaxial compression\n\nThe packing of 22 x 25 x 30 spheres of `examples/uniaxial-compression`, one thread. Before the plate arrives at t = 0.19 s grains just touch.\n")
     comparison(results, "example", "lammps")
     print("## Many spheres, pressed\n\nThe same packing, larger, shrunk by 2 % with its box, so that all contacts exist from the first step; one thread.\n")

@@ -11,15 +11,6 @@
 
 #include <string.h>
 
-static const double first_skin = 0.3;   ///< of the mean radius, where the search for the best skin starts
-static const double least_skin = 0.02;  ///< of the mean radius
-static const double most_skin = 1.5;    ///< of the mean radius
-static const double first_change = 1.5; ///< first factor tried; it shrinks towards `last_change`
-static const double last_change = 1.05;
-static const double worth = 0.025; ///< what a larger skin has to gain, of the time per step, and a smaller one may lose, per factor e
-static const double window_seconds = 0.3;    ///< wall time measured at least before the skin is changed
-static const double long_seconds = 3.0;      ///< wall time after which one list is enough
-static const int builds_per_window = 4;      ///< lists otherwise
 static const uint64_t builds_per_order = 24; ///< rebuilds between looks at the memory order
 
 static double mean_radius(const pls_world *world)
@@ -33,37 +24,6 @@ static double mean_radius(const pls_world *world)
             ++count;
         }
     return count ? sum / (double)count : 1.0;
-}
-
-/// Hill climbing on wall time per step: go on while it falls, turn and take smaller steps when it rises. A larger skin costs memory and has to earn it.
-static void tune_skin(pls_world *world)
-{
-    pls_skin_tuner *tuner = &world->tuner;
-    if (world->def.skin > 0.0)
-    {
-        tuner->skin = world->def.skin;
-        return;
-    }
-    double mean = mean_radius(world), now = pls_clock();
-    if (tuner->skin == 0.0)
-    {
-        *tuner =
-            (pls_skin_tuner){.skin = first_skin * mean, .factor = first_change, .last_cost = INFINITY, .since = now, .steps = world->step};
-        return;
-    }
-    double elapsed = now - tuner->since;
-    if (++tuner->builds < builds_per_window ? elapsed < long_seconds : elapsed < window_seconds) return;
-    double cost = elapsed / (double)(world->step - tuner->steps + 1);
-    if (cost > tuner->last_cost * (1.0 - worth * log(tuner->factor)))
-    {
-        double smaller = fmax(sqrt(fmax(tuner->factor, 1.0 / tuner->factor)), last_change);
-        tuner->factor = tuner->factor > 1.0 ? 1.0 / smaller : smaller;
-    }
-    tuner->last_cost = cost;
-    tuner->skin = fmin(fmax(tuner->skin * tuner->factor, least_skin * mean), most_skin * mean);
-    tuner->since = now;
-    tuner->steps = world->step;
-    tuner->builds = 0;
 }
 
 /// Keep the skin within what periodic edges leave beside two largest diameters (broad_phase.c). A given skin is shortened too, as no skin changes a result and
@@ -193,6 +153,7 @@ static pls_status build_lists(pls_world *world)
     pls_near_pairs near = {0};
     const double skin = world->tuner.skin;
     pls_status status = pls_broad_phase(&world->bodies, &world->domain, skin, &near);
+    if (status == PLS_OK) pls_skin_survey(&world->tuner, &world->bodies, &world->domain, &near);
     const pls_solid_source source = {
         .bodies = &world->bodies, .domain = &world->domain, .laws = &world->laws, .shape = world->shape_of, .near = &near, .gap = skin};
     if (status == PLS_OK) status = pls_solid_list_build(&world->solids, &source, &world->records);
@@ -214,14 +175,19 @@ pls_status pls_neighbours_refresh(pls_world *world)
     pls_pair_list *list = &world->list;
     if (list->alone && pls_threads() > 1) list->stale = true; // was made for one thread
     if (pls_neighbours_hold(world)) return PLS_OK;
-    if (!list->stale)
+    const bool worn_out = !list->stale;
+    if (worn_out)
     {
         PLS_TRY(pls_pair_list_approach(list, &world->bodies, &world->domain, &list->drift));
         list->drift += list->image_drift;
         if (list->drift < 0.9 * list->skin) return PLS_OK;
     }
+    const double began = pls_clock();
     PLS_TRY(pls_neighbours_detach(world));
-    tune_skin(world);
+    if (world->def.skin > 0.0)
+        world->tuner.skin = world->def.skin;
+    else
+        pls_skin_choose(&world->tuner, list, &world->solids, world->bodies.count, mean_radius(world), worn_out, world->step, began);
     fit_skin(world);
     if (world->def.reorder && list->builds % builds_per_order == 0) PLS_TRY(order_bodies(world));
     PLS_TRY(build_lists(world));
@@ -229,5 +195,6 @@ pls_status pls_neighbours_refresh(pls_world *world)
     world->memory_holds = false;
     pls_contact_memory_free(&world->memory); // as large as the lists themselves, and idle until the next
     pls_solid_records_free(&world->records);
+    pls_skin_listed(&world->tuner, world->step, began, pls_clock());
     return PLS_OK;
 }

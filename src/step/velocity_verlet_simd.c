@@ -126,7 +126,7 @@ static inline __attribute__((always_inline)) void turn(const group *g, const pls
     pls_rows4(q, out, g->count);
 }
 
-/// From forces and velocities of now; remembers the forces.
+/// From forces and velocities of now; remembers the forces. Orientations are left to `turn`.
 static inline __attribute__((always_inline)) void begin(group *g, double dt, drift_sums *sums)
 {
     const double half = 0.5 * dt, quarter = 0.25 * dt;
@@ -159,7 +159,6 @@ static inline __attribute__((always_inline)) void begin(group *g, double dt, dri
     g->spin[3] = lead[0];
     g->spin[7] = lead[1];
     g->place[7] = lead[2];
-    turn(g, uw, half);
 }
 
 void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report)
@@ -173,6 +172,7 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
         for (int lane = 0; lane < PLS_W; ++lane) load[lane] = pls_row_load(&bodies->load[row_of(&g, lane)].fx);
         pls_columns8(load, g.load);
         begin(&g, dt, &sums);
+        turn(&g, g.spin, 0.5 * dt);
         store_motion(&g, 1);
     }
     report_drift(&sums, dt, report);
@@ -277,6 +277,7 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
 {
     const bool fetch = bodies->count > PLS_VAST_WORLD; // elsewhere they have not gone far
     drift_sums sums = {0};
+    group behind = {.count = 0}; // its orientations are turned a group later, while the slots of the next are on their way
     for (size_t row = first; row < last; row += PLS_W)
     {
         group g = {.bodies = bodies, .first = row, .count = last - row < PLS_W ? (int)(last - row) : PLS_W};
@@ -292,14 +293,20 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
                 sum[lane] =
                     pls_row_add(sum[lane], pls_row_join(pls_v4_load(force + 4 * (k - first)), pls_v4_load(torque + 4 * (k - first))));
         }
+        if (behind.count > 0) turn(&behind, behind.spin, 0.5 * dt);
         load_motion(&g);
         finish(&g, sum, dt);
         if (go_on)
+        {
             begin(&g, dt, &sums);
+            behind.bodies = bodies, behind.first = row, behind.count = g.count; // only what `turn` asks for: whole, it would be copied
+            for (int a = 0; a < 3; ++a) behind.spin[a] = g.spin[a];
+        }
         else
             for (int a = 0; a < 3; ++a) sums.poison = sums.poison + (g.place[4 + a] * 0.0 + g.spin[a] * 0.0);
         store_motion(&g, go_on);
     }
+    if (behind.count > 0) turn(&behind, behind.spin, 0.5 * dt);
     report_drift(&sums, dt, report);
 }
 

@@ -8,6 +8,7 @@
 #include "law/law_table.h"
 #include "model/bodies.h"
 #include "model/domain.h"
+#include "step/skin_tuner.h"
 
 #include <particls/world.h>
 
@@ -56,17 +57,6 @@ typedef struct pls_special
     pls_vec3 half_spin;                    ///< the same of rotation; for anisotropic bodies the angular momentum
     pls_vec3 driven_velocity, driven_spin; ///< at the end of the step
 } pls_special;
-
-/// The skin's search for the cheapest value.
-typedef struct pls_skin_tuner
-{
-    double skin;      ///< in use [m]
-    double factor;    ///< next change
-    double last_cost; ///< wall time per step with the last value [s]
-    double since;     ///< clock at the start of the window [s]
-    uint64_t steps;   ///< in the window
-    int builds;       ///< in the window
-} pls_skin_tuner;
 
 /// A contact that ended in this step, and the energy it still held [J].
 struct pls_parted
