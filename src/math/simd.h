@@ -56,7 +56,8 @@ static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
 static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }
 static inline pls_v4 pls_v4_load(const double *p) { return *(const pls_v4 *)p; }
 static inline void pls_v4_store(double *p, pls_v4 a) { *(pls_v4 *)p = a; }
-static inline pls_vd pls_vd_set(double a) { return (pls_vd){0} + a; }
+/// In all lanes. (To take nothing away costs nothing; to add nothing would, as it makes a positive zero of a negative one.)
+static inline pls_vd pls_vd_set(double a) { return a - (pls_vd){0}; }
 static inline pls_v4 pls_v4_set(double a) { return (pls_v4){a, a, a, a}; }
 /// mask ? a : b, mask all ones or all zeros per lane.
 static inline pls_vd pls_vd_pick(pls_vi mask, pls_vd a, pls_vd b) { return (pls_vd)((mask & (pls_vi)a) | (~mask & (pls_vi)b)); }

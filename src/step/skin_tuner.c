@@ -3,6 +3,7 @@
 #include "step/skin_tuner.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double first_skin = 0.3; ///< of the mean radius
 static const double least_skin = 0.02;
@@ -38,11 +39,14 @@ void pls_skin_survey(pls_skin_tuner *t, const pls_bodies *bodies, const pls_doma
         while (k < PLS_SKIN_CHOICES && gap < choice[k]) ++k;
         ++within[pls_pair_is_solid(bodies, pair->owner, pair->partner)][k - 1];
     }
-    for (int k = PLS_SKIN_CHOICES - 1, next = k; k >= 0; next = k--)
+    // So far those that are in no smaller choice.
+    for (int k = PLS_SKIN_CHOICES - 1; k-- > 0;)
     {
-        t->balls[k] = within[0][k] + (next > k ? t->balls[next] : 0.0);
-        t->solids[k] = within[1][k] + (next > k ? t->solids[next] : 0.0);
+        within[0][k] += within[0][k + 1];
+        within[1][k] += within[1][k + 1];
     }
+    memcpy(t->balls, within[0], sizeof t->balls);
+    memcpy(t->solids, within[1], sizeof t->solids);
 }
 
 void pls_skin_choose(pls_skin_tuner *t, const pls_pair_list *list, const pls_solid_list *solids, size_t bodies, double radius,
