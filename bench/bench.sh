@@ -188,7 +188,7 @@ compiler=$(sed -n 's/^CMAKE_C_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
 cat >"$results/machine.tsv" <<TEXT
 date	$(date -u +%Y-%m-%d)
 took	$((SECONDS - start)) s
-processor	$(LC_ALL=C lscpu | awk -F ': *' '/^Model name:/ { name = $2 } /^CPU family:/ { family = $2 } /^Model:/ { model = $2 } END { printf "%s (family %s model %s)", name, family, model }'), $(nproc) processors online, instruction sets measured: ${isas[*]}
+processor	$(LC_ALL=C lscpu | awk -F ': *' '/^ *Model name:/ { name = $2 } /^ *CPU family:/ { family = $2 } /^ *Model:/ { model = $2 } END { printf "%s (family %s model %s)", name, family, model }'), $(nproc) processors online, instruction sets measured: ${isas[*]}
 caches	$(LC_ALL=C lscpu | sed -n 's/^\(L[1-3][di]*\) cache: */\1 /p' | paste -sd ',' | sed 's/,/, /g')
 memory	$(awk '/^MemTotal/ { printf "%.1f GiB", $2 / 1048576 }' /proc/meminfo)
 kernel	$(uname -sr)

@@ -175,22 +175,25 @@ def settling(results):
     table(["", "grains", "rounds", "contacts per grain", "particle-steps/s", "us per contact and step", "ratio (median)", "least to most"], rows)
 
 
-MACHINES = ("processor", "date", "particls", "16,500 spheres, AVX-512", "AVX2", "a million, AVX-512", "two threads, 16,500", "polyhedra against Yade")
+MACHINES = ("processor", "date", "particls", "16,500 spheres, AVX-512 / LAMMPS", "AVX2 / LAMMPS", "a million, AVX-512 / LAMMPS", "two threads / one, 16,500",
+            "polyhedra / Yade")
 
 
-def machines(results, path):
-    """The main ratios, median and range over the rounds, on each processor that was measured."""
+def machines(results, path, whole):
+    """The main ratios, median and range over the rounds, on each processor that was measured; this one's are put into the table if the run was `whole`."""
     facts = dict(line.split("\t", 1) for line in (results / "machine.tsv").read_text().splitlines())
     row = [facts["processor"].split(",")[0], facts["date"], facts["particls"]]
     for case, program, reference in (("example", "particls-v4", "lammps"), ("example", "particls-v3", "lammps"), ("large", "particls-v4", "lammps"),
                                      ("threads", "particls-2", "particls-1"), ("settling", "particls", "yade")):
-        lines = load(results, case)
-        median, span = ratio(speeds(lines, program), speeds(lines, reference))
-        row.append(median if median == "-" else f"{median} ({span})")
+        median, span = ratio(speeds(load(results, case), program), speeds(load(results, case), reference))
+        row.append(median if median == "-" else f"{median.strip('*')} ({span})")
     rows = [line.split("\t") for line in path.read_text().splitlines()[1:]] if path.exists() else []
-    rows = sorted([other for other in rows if other[0] != row[0]] + [row])
-    path.write_text("".join("\t".join(line) + "\n" for line in [MACHINES, *rows]))
-    print("## On every processor so far\n\nThe main ratios, to LAMMPS for spheres, as the last `make bench` on each left them (`bench/machines.tsv`).\n")
+    if whole:
+        old = next((other for other in rows if other[0] == row[0]), row)
+        row = [before if now == "-" else now for before, now in zip(old, row)]
+        rows = sorted([other for other in rows if other[0] != row[0]] + [row])
+        path.write_text("".join("\t".join(line) + "\n" for line in [MACHINES, *rows]))
+    print("## On every processor so far\n\nThe main ratios of speeds as the last `make bench` that went through on each left them (`bench/machines.tsv`).\n")
     table(MACHINES, rows)
 
 
@@ -230,7 +233,7 @@ def main():
     else:
         print(f"All runs went through. In each of {len(groups)} jobs every run ended in the same state, bit for bit, on any instruction set and number of threads.\n")
     if len(sys.argv) > 3:
-        machines(results, pathlib.Path(sys.argv[3]))
+        machines(results, pathlib.Path(sys.argv[3]), not failures and not different)
     print("## Uniaxial compression\n\nThe packing of 22 x 25 x 30 spheres of `examples/uniaxial-compression`, one thread. Before the plate arrives at t = 0.19 s grains just touch.\n")
     comparison(results, "example", "lammps")
     print("## Many spheres, pressed\n\nThe same packing, larger, shrunk by 2 % with its box, so that all contacts exist from the first step; one thread.\n")

@@ -56,7 +56,7 @@ static inline pls_vd pls_vd_load(const double *p) { return *(const pls_vd *)p; }
 static inline void pls_vd_store(double *p, pls_vd a) { *(pls_vd *)p = a; }
 static inline pls_v4 pls_v4_load(const double *p) { return *(const pls_v4 *)p; }
 static inline void pls_v4_store(double *p, pls_v4 a) { *(pls_v4 *)p = a; }
-/// In all lanes. (To take nothing away costs nothing; to add nothing would, as it makes a positive zero of a negative one.)
+/// In all lanes. `a - 0` is a for every a, so that compilers drop the difference; `0 + a` would have to be computed: it turns -0 into +0.
 static inline pls_vd pls_vd_set(double a) { return a - (pls_vd){0}; }
 static inline pls_v4 pls_v4_set(double a) { return (pls_v4){a, a, a, a}; }
 /// mask ? a : b, mask all ones or all zeros per lane.

@@ -153,7 +153,7 @@ static pls_status build_lists(pls_world *world)
     pls_near_pairs near = {0};
     const double skin = world->tuner.skin;
     pls_status status = pls_broad_phase(&world->bodies, &world->domain, skin, &near);
-    if (status == PLS_OK) pls_skin_survey(&world->tuner, &world->bodies, &world->domain, &near);
+    if (status == PLS_OK && world->def.skin == 0.0) pls_skin_survey(&world->tuner, &world->bodies, &world->domain, &near);
     const pls_solid_source source = {
         .bodies = &world->bodies, .domain = &world->domain, .laws = &world->laws, .shape = world->shape_of, .near = &near, .gap = skin};
     if (status == PLS_OK) status = pls_solid_list_build(&world->solids, &source, &world->records);

@@ -3,7 +3,7 @@
 // A larger skin lets a list live longer and puts more pairs into it that do not touch. Both are counted, not timed: wall time per step moves by a third on a machine that
 // others use too, and a search that follows it walks away, in a lattice into the next shell and lists half as long again. The pairs within smaller skins are counted
 // when a list is made, so that values are compared at the same moment and what changes in the world meanwhile is not taken for an effect of the skin. Measured is only what a
-// list costs in steps, by the least of both times that were seen of late.
+// list costs in steps (with all that is done in a step), by the shortest of both times of late.
 #ifndef PLS_STEP_SKIN_TUNER_H
 #define PLS_STEP_SKIN_TUNER_H
 
@@ -18,17 +18,20 @@ enum { PLS_SKIN_CHOICES = 10 };
 typedef struct pls_skin_tuner
 {
     double skin;                                              ///< in use [m]; 0: none was chosen yet
+    double radius;                                            ///< mean of all bodies when it was [m]
     double balls[PLS_SKIN_CHOICES], solids[PLS_SKIN_CHOICES]; ///< pairs of balls, and others, within each choice
-    double list_seconds, step_seconds;                        ///< the least of late; 0: not known yet
+    double list_seconds, step_seconds;                        ///< the shortest of late, raised by a tenth per list; 0: not known yet
     double ready;                                             ///< clock when the list in use was ready [s]
     uint64_t ready_step;                                      ///< the step then
-    uint64_t lived;                                           ///< steps that `lists` lists lived, of those with this skin
-    int lists;
-    int wait; ///< times to choose until a larger skin may be tried again
+    int lists;                                                ///< worn out since the last choice
+    uint64_t lived;                                           ///< steps that these lived
+    bool enlarged;                                            ///< the last choice was a larger skin, blind
+    int wait;                                                 ///< choices until a larger one may be tried again
+    int patience;                                             ///< how many those are after one was too large
 } pls_skin_tuner;
 
-/// The list in use is about to be made anew: choose the next skin. `worn_out`: because bodies have moved, so that its life tells something. `radius`: the mean of all
-/// bodies [m]; `now`: clock [s].
+/// The list in use is about to be made anew: choose the next skin. `worn_out`: because bodies have moved; otherwise the world has changed, and all begins anew. `radius`: the
+/// mean of all bodies [m]; `now`: clock [s].
 void pls_skin_choose(pls_skin_tuner *tuner, const pls_pair_list *list, const pls_solid_list *solids, size_t bodies, double radius,
                      bool worn_out, uint64_t step, double now);
 
