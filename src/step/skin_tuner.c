@@ -84,24 +84,21 @@ void pls_skin_choose(pls_skin_tuner *t, const pls_pair_list *list, const pls_sol
         const double work = listed_work(t, k, ball_work, candidates) + lists / pow(smaller, k);
         if (work < least) best = k, least = work;
     }
+    const bool was_enlarged = t->enlarged;
+    t->enlarged = best == 0 && t->wait == 0 && lists * (1.0 - 1.0 / larger) > worth * needed;
     if (best > 0)
     {
         skin *= pow(smaller, best);
-        if (t->enlarged) t->patience = t->patience < most_patience ? 2 * t->patience : most_patience;
-        if (t->patience == 0) t->patience = first_patience;
+        if (t->patience == 0)
+            t->patience = first_patience;
+        else if (was_enlarged && t->patience < most_patience)
+            t->patience *= 2;
         t->wait = t->patience;
-        t->enlarged = false;
     }
     else if (t->wait > 0)
-    {
         --t->wait;
-        t->enlarged = false;
-    }
-    else
-    {
-        t->enlarged = lists * (1.0 - 1.0 / larger) > worth * needed;
-        if (t->enlarged) skin *= larger;
-    }
+    else if (t->enlarged)
+        skin *= larger;
     t->skin = fmin(fmax(skin, least_skin * radius), most_skin * radius);
     t->lists = 0;
     t->lived = 0;

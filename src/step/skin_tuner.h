@@ -18,7 +18,7 @@ enum { PLS_SKIN_CHOICES = 10 };
 typedef struct pls_skin_tuner
 {
     double skin;                                              ///< in use [m]; 0: none was chosen yet
-    double radius;                                            ///< mean of all bodies when it was [m]
+    double radius;                                            ///< mean of all bodies when all began anew [m]
     double balls[PLS_SKIN_CHOICES], solids[PLS_SKIN_CHOICES]; ///< pairs of balls, and others, within each choice
     double list_seconds, step_seconds;                        ///< the shortest of late, raised by a tenth per list; 0: not known yet
     double ready;                                             ///< clock when the list in use was ready [s]
