@@ -29,6 +29,8 @@
 
 #include "contact/faces.h"
 
+#include "contact/facet.h"
+#include "contact/overlap_laws.h"
 #include "contact/overlap_record.h"
 #include "shape/builtin.h"
 
@@ -113,116 +115,13 @@ static double take_heights(const pls_posed *p, pls_vec3 origin, pls_vec3 n, doub
     return PLS_SIMD_SELECT(pls_overlap_heights)(p->shape->polytope, own, start, height);
 }
 
-/// The prism behind a facet, its front towards `centre`, its margin in front.
+/// The prism behind a facet, its front towards `centre`.
 static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, pls_near_body *out)
 {
-    const pls_polytope *t = p->shape->polytope;
-    const int corners = p->shape->dimension;
-    pls_vec3 x[3] = {{0.0, 0.0, 0.0}}, middle = {0.0, 0.0, 0.0};
-    for (int k = 0; k < corners; ++k)
-    {
-        x[k] = pls_sub(pls_posed_world(p, t->vertex[k]), origin);
-        middle = pls_add(middle, pls_scale(x[k], 1.0 / corners));
-    }
-    if (corners == 2) x[2] = pls_add(x[0], pls_vec(0.0, 0.0, 1.0));
-    pls_vec3 front = pls_unit(pls_cross(pls_sub(x[1], x[0]), pls_sub(x[2], x[0])));
-    if (pls_dot(front, pls_sub(pls_sub(centre, origin), x[0])) < 0.0) front = pls_scale(front, -1.0);
-    out->face[0].plane = half_space(front, pls_add(x[0], pls_scale(front, p->shape->margin * p->scale)));
-    out->faces = out->planes = 1;
+    pls_half_space plane[4];
+    out->faces = 1, out->planes = pls_facet_prism(p, origin, centre, plane);
     out->face[0].outline = NULL;
-    for (int k = 0; k < corners; ++k)
-    {
-        const pls_vec3 along = corners == 2 ? pls_vec(0.0, 0.0, 1.0) : pls_sub(x[(k + 1) % 3], x[k]);
-        pls_vec3 side = pls_unit(pls_cross(along, front));
-        if (pls_dot(side, pls_sub(middle, x[k])) > 0.0) side = pls_scale(side, -1.0);
-        out->face[out->planes++].plane = half_space(side, x[k]);
-    }
-}
-
-static pls_vec3 second_along(const double s[6], pls_vec3 n)
-{
-    return pls_vec(s[0] * n.x + s[3] * n.y + s[4] * n.z, s[3] * n.x + s[1] * n.y + s[5] * n.z, s[4] * n.x + s[5] * n.y + s[2] * n.z);
-}
-
-// ---- the laws -----------------------------------------------------------------------------------------------------------------------------------------------
-
-/// Nothing overlaps, or less than numbers tell.
-static void no_touch(const pls_depth *depth, pls_touch *out)
-{
-    const pls_vec3 point = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
-    *out = (pls_touch){.delta = fmin(depth->delta, 0.0),
-                       .normal = depth->normal,
-                       .point = point,
-                       .middle = point,
-                       .weight = 0.0,
-                       .energy_delta = 0.0,
-                       .depth = depth->delta};
-}
-
-/// The wrench as a force on a line, at its point nearest to `middle`, and a couple.
-static void put_on_line(const pls_push *p, pls_vec3 middle, pls_vec3 *point, double *twist)
-{
-    const double square = pls_dot(p->force, p->force);
-    const pls_vec3 torque = pls_sub(p->torque, pls_cross(middle, p->force));
-    *point = pls_add(middle, pls_scale(pls_cross(p->force, torque), 1.0 / square));
-    *twist = pls_dot(torque, p->force) / square;
-}
-
-/// Thickness is small, so that it does not matter that the moments are those of the body, not of its shadow.
-static void take_spread(const pls_overlap_integrals *P, bool flat, double spread[6])
-{
-    const double V = P->volume;
-    const pls_vec3 c = pls_scale(P->first, 1.0 / V);
-    const double middle[6] = {c.x * c.x, c.y * c.y, c.z * c.z, c.x * c.y, c.x * c.z, c.y * c.z};
-    for (int k = 0; k < 6; ++k) spread[k] = flat && (k == 2 || k > 3) ? 0.0 : P->second[k] / V - middle[k];
-}
-
-/// The middle of A's surface in B, in the plane of touch through the point of the normal force. That point wanders as faces tilt: at overlaps far below the size by more than
-/// the size per radian. Friction that wandered along would turn bodies about the normal by what makes them roll, and take from its load what it gives: a box at rest on a
-/// slope would begin to waggle and walk down. The middle of an area is a matter of its outline.
-static pls_vec3 middle_of_area(const pls_overlap_integrals *P, const pls_touch *t)
-{
-    const pls_vec3 area = P->area;
-    const double square = pls_dot(area, area);
-    if (!(square > 0.0)) return t->point;
-    return pls_in_plane_of_touch(t, pls_scale(pls_cross(area, P->area_moment), 1.0 / square));
-}
-
-/// Right for evenly pressed discs, whose mean distance from the middle it is (2/3 of their radius), and to half a percent for squares.
-static double lever_of(const pls_touch *t)
-{
-    const double *s = t->spread, all = s[0] + s[1] + s[2] - pls_dot(t->normal, second_along(s, t->normal));
-    return PLS_ARM_OF_DISC * sqrt(fmax(all, 0.0));
-}
-
-/// Energy kn W / A0.
-static void volume_law(const pls_overlap_integrals *P, double A0, pls_touch *out)
-{
-    const pls_push *w = &P->by_depth;
-    const double length = pls_length(w->force);
-    out->normal = pls_scale(w->force, 1.0 / length);
-    out->delta = length / A0;
-    out->weight = fabs(pls_dot(P->area, out->normal)) / A0;
-    out->energy_delta = sqrt(2.0 * w->energy / A0);
-    put_on_line(w, pls_scale(P->first, 1.0 / P->volume), &out->point, &out->twist);
-}
-
-/// Energy kn delta^2 / 2, delta = 3 Q / 2 W.
-static void manifold_law(const pls_overlap_integrals *P, pls_touch *out)
-{
-    const pls_push *W = &P->by_depth, *Q = &P->by_its_square;
-    const double V = P->volume, delta = 1.5 * Q->energy / W->energy;
-    pls_push slope = {.force = pls_scale(pls_sub(pls_scale(Q->force, 1.5), pls_scale(W->force, delta)), 1.0 / W->energy),
-                      .torque = pls_scale(pls_sub(pls_scale(Q->torque, 1.5), pls_scale(W->torque, delta)), 1.0 / W->energy)};
-    const double length = pls_length(slope.force);
-    out->normal = pls_scale(slope.force, 1.0 / length);
-    out->delta = delta * length;
-    out->energy_delta = delta;
-    // d2(delta^2/2) as the overlap grows deeper over a fixed area: by integrals of t^0, t and t^2 over it; 1 for parallel faces, 9/16 at an edge.
-    const double squares = 2.0 * W->energy, area = fabs(pls_dot(P->area, out->normal));
-    const double a = delta * V / squares, b = delta * delta * area / squares;
-    out->weight = fmax(9.0 - 18.0 * a + 12.0 * a * a - 2.0 * b, 0.0);
-    put_on_line(&slope, pls_scale(P->first, 1.0 / V), &out->point, &out->twist);
+    for (int k = 0; k < out->planes; ++k) out->face[k].plane = plane[k];
 }
 
 /// Half-space and ellipsoid: the cap, stretched to that of a unit sphere. `front` out of the half-space.
@@ -260,14 +159,6 @@ static bool is_ellipsoid(const pls_shape *s, double half[3])
 }
 
 // ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
-
-/// In 2D the overlap is a slab about the plane z = 0: what cancels between its two sides leaves rounding errors, which would push bodies out of the plane.
-static void flatten(pls_overlap_integrals *P)
-{
-    pls_push *both[2] = {&P->by_depth, &P->by_its_square};
-    for (int k = 0; k < 2; ++k) both[k]->force.z = both[k]->torque.x = both[k]->torque.y = 0.0;
-    P->first.z = 0.0;
-}
 
 /// The overlap as seen along the normal of touch: of A's and B's vertices the heights above the origin, towards the other body, and from where on faces matter.
 typedef struct slab
@@ -355,7 +246,7 @@ static bool by_record(const pls_posed *a, const pls_posed *b, const slab *s, boo
 static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                         pls_overlap_record *record, pls_touch *out)
 {
-    const bool plane = b->shape->ops->unbounded, facet = pls_is_facet(b->shape), flat = a->shape->dimension == 2;
+    const bool plane = b->shape->ops->unbounded, facet = pls_is_facet(b->shape);
     pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
     double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS];
     pls_vec3 n = depth->normal;
@@ -397,42 +288,9 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
         take_both(a, b, &between, &A, &B);
         PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, blur * size, &P);
     }
-    // Slivers that blur makes where sides only just do not overlap.
-    if (!(P.volume > 100.0 * blur * size * P.surface) || !(P.by_depth.energy > 0.0)) return false;
-    if (squares && !(P.by_its_square.energy > 0.0)) return false;
-    if (flat) flatten(&P);
-    if (options->faces == PLS_FACES_VOLUME)
-        volume_law(&P, options->face_area, out);
-    else
-        manifold_law(&P, out);
-    take_spread(&P, flat, out->spread);
-    out->lever = flat ? 0.0 : lever_of(out);
-    out->middle = flat ? out->point : middle_of_area(&P, out);
+    if (!pls_overlap_touch(&P, options, blur * size, a->shape->dimension == 2, out)) return false;
     out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
-    return isfinite(out->delta) && out->delta > 0.0;
-}
-
-/// Two axes at right angles to the normal, and the moments of the spread along them.
-static void spread_across(const pls_touch *t, pls_vec3 axis[2], double moment[3])
-{
-    const pls_vec3 n = t->normal;
-    axis[0] = pls_unit(fabs(n.x) < fabs(n.y) ? pls_vec(0.0, n.z, -n.y) : pls_vec(-n.z, 0.0, n.x));
-    axis[1] = pls_cross(n, axis[0]);
-    const pls_vec3 turned[2] = {second_along(t->spread, axis[0]), second_along(t->spread, axis[1])};
-    moment[0] = pls_dot(axis[0], turned[0]), moment[1] = pls_dot(axis[1], turned[1]), moment[2] = pls_dot(axis[0], turned[1]);
-}
-
-void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4])
-{
-    // Columns of the moments' Cholesky factor, times the root of two.
-    pls_vec3 axis[2];
-    double moment[3];
-    spread_across(touch, axis, moment);
-    const double first = sqrt(fmax(moment[0], 0.0)), shared = first > 0.0 ? moment[2] / first : 0.0;
-    const double second = sqrt(fmax(moment[1] - shared * shared, 0.0));
-    corner[0] = pls_scale(pls_add(pls_scale(axis[0], first), pls_scale(axis[1], shared)), M_SQRT2);
-    corner[2] = pls_scale(axis[1], M_SQRT2 * second);
-    corner[1] = pls_scale(corner[0], -1.0), corner[3] = pls_scale(corner[2], -1.0);
+    return true;
 }
 
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
@@ -446,12 +304,12 @@ bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
     if (cap)
     {
         if (depth->delta <= 0.0)
-            no_touch(depth, out);
+            pls_overlap_none(depth, out);
         else
             cap_law(a, half, pls_posed_gradient(b, b->position), b->position, options->face_area, out);
     }
     else if (depth->delta <= 0.0 || !overlap_law(a, b, depth, options, record, out))
-        no_touch(depth, out);
+        pls_overlap_none(depth, out);
     out->depth = depth->delta;
     return true;
 }

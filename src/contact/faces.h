@@ -17,29 +17,4 @@ enum { PLS_MOST_FACES = 256 };
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                      pls_overlap_record *record, pls_touch *out);
 
-/// A triangle or segment of a wall: two faces back to back.
-static inline bool pls_is_facet(const pls_shape *s)
-{
-    return s->convex && s->polytope && s->polytope->face_count == 2 && s->polytope->vertex_count == (uint32_t)s->dimension;
-}
-
-/// Mean distance from the middle over the radius of gyration, of a disc and of a line that are evenly pressed.
-#define PLS_ARM_OF_DISC 0.94280904158206336
-#define PLS_ARM_OF_LINE 0.86602540378443865
-
-/// X moved along the normal into the plane of touch, that of the normal force.
-static inline pls_vec3 pls_in_plane_of_touch(const pls_touch *t, pls_vec3 X)
-{
-    const pls_vec3 apart = pls_sub(X, t->point);
-    return pls_add(t->point, pls_sub(apart, pls_scale(t->normal, pls_dot(apart, t->normal))));
-}
-
-/// Where two bodies touch over an area, force and point alone do not tell how they rub and damp when they turn on each other: these do.
-/// @{
-
-static inline bool pls_touch_is_point(const pls_touch *t) { return t->spread[0] == 0.0 && t->spread[1] == 0.0 && t->spread[2] == 0.0; }
-/// Four points, a quarter of the area each, that have its second moments: from `touch->point`, opposite ones in turn.
-void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4]);
-/// @}
-
 #endif

@@ -19,7 +19,8 @@
 
 #include "contact/lines.h"
 
-#include "contact/faces.h"
+#include "contact/facet.h"
+#include "contact/touch_area.h"
 #include "math/gauss.h"
 
 static const double parallel = 1e-12; ///< sine of the angle below which a line keeps its distance from an edge

@@ -21,7 +21,7 @@
 
 #include "contact/admm.h"
 #include "contact/convex.h"
-#include "contact/cylinder_on_plane.h"
+#include "contact/cylinder_touch.h"
 #include "contact/faces.h"
 #include "contact/feature_depth.h"
 #include "contact/lines.h"
@@ -550,6 +550,6 @@ void pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     as_touch(&d, out);
     // Where the pair has neither faces nor lines to speak of the point stands.
     if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return;
-    if (pls_faces_touch(a, b, &d, options, record, out) || pls_cylinder_on_plane(a, b, &d, options, out)) return;
+    if (pls_faces_touch(a, b, &d, options, record, out) || pls_cylinder_touch(a, b, &d, options, out)) return;
     pls_lines_touch(a, b, &d, out);
 }

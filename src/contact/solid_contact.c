@@ -22,7 +22,7 @@
 
 #include "contact/solid_contact.h"
 
-#include "contact/faces.h"
+#include "contact/touch_area.h"
 #include "contact/overlap_record.h"
 #include "math/small_turn.h"
 

@@ -2,7 +2,7 @@
 
 #include "step/contact_rates.h"
 
-#include "contact/faces.h"
+#include "contact/touch_area.h"
 
 static const double typical_overlap =
     0.01; ///< of the radius: where a law whose stiffness vanishes at zero overlap is asked before grains touch

@@ -1,6 +1,7 @@
 // Laws of faces: volumes and energies against closed forms and Monte Carlo on the SDFs, forces against the gradient of the energy, and what collisions keep of it.
 
 #include "contact/faces.h"
+#include "contact/touch_area.h"
 #include "shape/builtin.h"
 #include "support/solids.h"
 #include "support/numbers.h"

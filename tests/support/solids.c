@@ -66,6 +66,12 @@ pls_shape *solids_plane(int dimension)
     return solids_make(&pls_plane_shape, dimension, &(pls_shape_input){VALUES(values)});
 }
 
+pls_shape *solids_cylinder(double radius, double length, double rounding)
+{
+    const double values[] = {radius, length, rounding};
+    return solids_make(&pls_cylinder_shape, 3, &(pls_shape_input){VALUES(values)});
+}
+
 pls_shape *solids_hull(int dimension, const pls_vec3 *points, size_t count, double rounding)
 {
     const double values[] = {[0] = rounding, [1] = rounding, [2] = rounding};
@@ -93,6 +99,16 @@ pls_narrow_options solids_options(pls_faces faces, double area)
     options.faces = faces;
     options.face_area = area;
     return options;
+}
+
+pls_touch solids_touch(const pls_posed *a, const pls_posed *b, pls_faces faces, double area)
+{
+    const pls_narrow_options options = solids_options(faces, area);
+    pls_pair_state state = {{0.0}};
+    pls_narrow_counts counts = {0};
+    pls_touch t = {0};
+    pls_narrow_phase(a, b, &options, &state, &t, &counts);
+    return t;
 }
 
 pls_depth solids_depth(const pls_posed *a, const pls_posed *b, pls_pair_state *state)

@@ -17,11 +17,14 @@ pls_quat solids_turn_to(pls_vec3 a, pls_vec3 b);
 pls_shape *solids_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input);
 pls_shape *solids_box(int dimension, double x, double y, double z, double rounding);
 pls_shape *solids_plane(int dimension);
+pls_shape *solids_cylinder(double radius, double length, double rounding);
 pls_shape *solids_hull(int dimension, const pls_vec3 *points, size_t count, double rounding);
 /// The hull of random points of an ellipsoid about the origin, of half axes 0.4 to 0.6.
 pls_shape *solids_stone(int dimension, int count, double rounding);
 
 pls_narrow_options solids_options(pls_faces faces, double area);
+/// The narrow phase without memory.
+pls_touch solids_touch(const pls_posed *a, const pls_posed *b, pls_faces faces, double area);
 /// Penetration depth; `state` may be null.
 pls_depth solids_depth(const pls_posed *a, const pls_posed *b, pls_pair_state *state);
 

@@ -1,0 +1,15 @@
+// overlap_laws.h -- what two bodies make of the integrals over their overlap: the laws VOLUME and MANIFOLD of faces.c.
+#ifndef PLS_CONTACT_OVERLAP_LAWS_H
+#define PLS_CONTACT_OVERLAP_LAWS_H
+
+#include "contact/convex.h"
+#include "contact/overlap.h"
+
+/// The touch by options->faces (VOLUME or MANIFOLD) and its area, about the origin and in the axes of the integrals; `depth` is left as it is. `flat`: in 2D. What is thinner
+/// than rounding errors, `blur`, is none [m]. False if nothing overlaps, or less than numbers tell.
+bool pls_overlap_touch(pls_overlap_integrals *P, const pls_narrow_options *options, double blur, bool flat, pls_touch *out);
+
+/// For bodies whose penetration depth is known but of which nothing, or less than numbers tell, overlaps.
+void pls_overlap_none(const pls_depth *depth, pls_touch *out);
+
+#endif
