@@ -78,22 +78,62 @@ uint64_t PLS_SIMD(pls_overlap_high)(const double *height, uint32_t vertices, dou
 
 // ---- planes and vertices --------------------------------------------------------------------------------------------------------------------------------
 
+/// Axes of a body by rows, of which the last number is that of `last` along the axis.
+typedef struct axes
+{
+    pls_v4 x, y, z;
+} axes;
+
+static inline axes axes_of(const pls_posed *p, double scale, pls_vec3 last)
+{
+    return (axes){row_of(pls_scale(p->x, scale), pls_dot(p->x, last)), row_of(pls_scale(p->y, scale), pls_dot(p->y, last)),
+                  row_of(pls_scale(p->z, scale), pls_dot(p->z, last))};
+}
+
+static inline pls_v4 turned(const axes *e, pls_vec3 own)
+{
+    return e->x * pls_v4_set(own.x) + e->y * pls_v4_set(own.y) + e->z * pls_v4_set(own.z);
+}
+
 static void place_planes(const pls_record_bodies *c, const pls_overlap_record *r, int body, scene *s)
 {
-    const int first = body * PLS_RECORD_PLANES, last = first + r->planes[body];
-    for (int k = first; k < last; ++k)
+    const int first = body * PLS_RECORD_PLANES, last = first + r->planes[body], end = (last + LANES - 1) & ~(LANES - 1);
+    if (body == 1 && c->wall)
+        s->row[first] = row_of(c->front, 0.0);
+    else
     {
-        const pls_half_space h = pls_record_plane(c, body, r->plane[body][k - first]);
-        s->normal[0][k] = h.normal.x, s->normal[1][k] = h.normal.y, s->normal[2][k] = h.normal.z, s->offset[k] = h.offset;
-        s->row[k] = row_of(h.normal, h.offset);
+        const pls_posed *p = c->body[body];
+        const pls_polytope *t = p->shape->polytope;
+        const axes e = axes_of(p, 1.0, c->start[body]);
+        for (int k = first; k < last; ++k)
+        {
+            const int face = r->plane[body][k - first];
+            const pls_vec3 own = t->face_normal[face];
+            s->row[k] =
+                turned(&e, own) + row_of(pls_vec(0.0, 0.0, 0.0), p->scale * pls_dot(own, t->vertex[t->face_vertex[t->face_start[face]]]));
+        }
     }
-    for (int k = last; k & (LANES - 1); ++k) s->normal[0][k] = s->normal[1][k] = s->normal[2][k] = 0.0, s->offset[k] = INFINITY;
+    for (int k = last; k < end; ++k) s->row[k] = row_of(pls_vec(0.0, 0.0, 0.0), INFINITY);
+    for (int k = first; k < end; k += PLS_W)
+    {
+        pls_vd column[4];
+        pls_columns4(s->row + k, column);
+        for (int a = 0; a < 3; ++a) pls_vd_store(&s->normal[a][k], column[a]);
+        pls_vd_store(&s->offset[k], column[3]);
+    }
 }
 
 static void place_vertices(const pls_record_bodies *c, const pls_overlap_record *r, scene *s)
 {
-    const int all = r->vertices[0] + r->vertices[1];
-    for (int k = 0; k < all; ++k) s->vertex[k] = row_of(pls_record_vertex(c, k >= r->vertices[0], r->vertex[k]), 1.0);
+    for (int body = 0, k = 0; body < 2; ++body)
+    {
+        const int last = k + r->vertices[body];
+        if (k == last) continue;
+        const pls_posed *p = c->body[body];
+        const pls_v4 start = row_of(c->start[body], 1.0);
+        const axes e = axes_of(p, p->scale, pls_vec(0.0, 0.0, 0.0));
+        for (; k < last; ++k) s->vertex[k] = start + turned(&e, p->shape->polytope->vertex[r->vertex[k]]);
+    }
 }
 
 // ---- corners --------------------------------------------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-// small_turn.h -- sine and cosine of the angles by which things turn in a step.
+// small_turn.h -- angles by which things turn in a step, their sines and cosines.
 #ifndef PLS_MATH_SMALL_TURN_H
 #define PLS_MATH_SMALL_TURN_H
 
@@ -16,6 +16,14 @@ static inline void pls_small_turn(double angle, double *sine, double *cosine)
     const double square = angle * angle;
     *sine = angle - angle * square * (1.0 / 6.0 - square * (1.0 / 120.0 - square * (1.0 / 5040.0)));
     *cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0 - square * (1.0 / 40320.0))));
+}
+
+/// Angle by its sine, from sine and cosine of an angle in 0 .. pi; 1 at zero. As above up to the same sine.
+static inline double pls_angle_by_sine(double sine, double cosine)
+{
+    if (!(sine < 1.0 / 32.0 && cosine > 0.0)) return atan2(sine, cosine) / sine;
+    const double square = sine * sine;
+    return 1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0 + square * (5.0 / 112.0 + square * (35.0 / 1152.0))));
 }
 
 #endif

@@ -179,8 +179,7 @@ static pls_vec3 angle_between(pls_quat from, pls_quat to)
 {
     pls_quat turn = pls_quat_multiply(to, pls_quat_conjugate(from));
     pls_vec3 axis = pls_scale(pls_vec(turn.x, turn.y, turn.z), turn.w < 0.0 ? -1.0 : 1.0);
-    double sine = pls_length(axis);
-    return sine > 0.0 ? pls_scale(axis, 2.0 * atan2(sine, fabs(turn.w)) / sine) : axis;
+    return pls_scale(axis, 2.0 * pls_angle_by_sine(pls_length(axis), fabs(turn.w)));
 }
 
 static pls_vec3 sum_of_torques(const pls_bodies *b, const pls_special *s)

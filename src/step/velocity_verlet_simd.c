@@ -126,8 +126,8 @@ static inline __attribute__((always_inline)) void turn(const group *g, const pls
     pls_rows4(q, out, g->count);
 }
 
-/// From forces and velocities of now; remembers the forces. Orientations are left to `turn`.
-static inline __attribute__((always_inline)) void begin(group *g, double dt, drift_sums *sums)
+/// From forces and velocities of now; remembers the forces, which are `load` by rows. Orientations are left to `turn`.
+static inline __attribute__((always_inline)) void begin(group *g, const pls_row load[PLS_W], double dt, drift_sums *sums)
 {
     const double half = 0.5 * dt, quarter = 0.25 * dt;
     const pls_vd zero = pls_vd_set(0.0);
@@ -138,8 +138,7 @@ static inline __attribute__((always_inline)) void begin(group *g, double dt, dri
     for (int lane = 0; lane < PLS_W; ++lane)
         if (lane < g->count)
             pls_row_to_floats(&g->bodies->before[row_of(g, lane)].fx,
-                              pls_row_pick(three, three, pls_row_load(&g->bodies->load[row_of(g, lane)].fx),
-                                           pls_row_join(pls_v4_set(0.0), pls_v4_set(0.0))));
+                              pls_row_pick(three, three, load[lane], pls_row_join(pls_v4_set(0.0), pls_v4_set(0.0))));
     pls_vd old[8], lead[3], u[3], uw[3];
     pls_columns8(last, old);
     for (int a = 0; a < 3; ++a)
@@ -171,7 +170,7 @@ void PLS_SIMD(pls_verlet_begin)(pls_bodies *bodies, size_t first, size_t last, d
         pls_row load[PLS_W];
         for (int lane = 0; lane < PLS_W; ++lane) load[lane] = pls_row_load(&bodies->load[row_of(&g, lane)].fx);
         pls_columns8(load, g.load);
-        begin(&g, dt, &sums);
+        begin(&g, load, dt, &sums);
         turn(&g, g.spin, 0.5 * dt);
         store_motion(&g, 1);
     }
@@ -242,19 +241,19 @@ static inline pls_row gather_walls(const pls_pair_list *list, size_t row, pls_ro
     return sum;
 }
 
-/// Velocities of the end from the sums of the contacts' slots and body forces; what contacts took is booked, half to either body.
-static inline __attribute__((always_inline)) void finish(group *g, const pls_row sum[PLS_W], double dt)
+/// Velocities of the end from the sums of the contacts' slots and body forces, which with the masses are `load`; what contacts took is booked, half to either body. Forces are
+/// stored where somebody may ask for them: if the step does not go on, else `begin` remembers them.
+static inline __attribute__((always_inline)) void finish(group *g, const pls_row sum[PLS_W], double dt, bool go_on, pls_row load[PLS_W])
 {
     const double half = 0.5 * dt;
     pls_bodies *b = g->bodies;
-    pls_row load[PLS_W];
     pls_vd total[8];
 #pragma GCC unroll 8
     for (int lane = 0; lane < PLS_W; ++lane)
     {
         double *row = &b->load[row_of(g, lane)].fx;
         load[lane] = pls_row_pick(three, three, sum[lane], pls_row_load(row));
-        if (lane < g->count) pls_row_store(row, load[lane]);
+        if (!go_on && lane < g->count) pls_row_store(row, load[lane]);
     }
     pls_columns8(sum, total);
     pls_last_columns(load, &g->load[3], &g->load[7]);
@@ -295,10 +294,11 @@ static inline __attribute__((always_inline)) void finish_rows(pls_bodies *bodies
         }
         if (behind.count > 0) turn(&behind, behind.spin, 0.5 * dt);
         load_motion(&g);
-        finish(&g, sum, dt);
+        pls_row load[PLS_W];
+        finish(&g, sum, dt, go_on, load);
         if (go_on)
         {
-            begin(&g, dt, &sums);
+            begin(&g, load, dt, &sums);
             behind.bodies = bodies, behind.first = row, behind.count = g.count; // only what `turn` asks for: whole, it would be copied
             for (int a = 0; a < 3; ++a) behind.spin[a] = g.spin[a];
         }
