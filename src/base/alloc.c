@@ -16,8 +16,8 @@
 #endif
 
 enum {
-    LARGE_PAGE = 2 << 20,  ///< bytes
-    LARGE_BLOCK = 32 << 20 ///< bytes from which whole large pages waste less than a sixteenth
+    LARGE_PAGE = 2 << 20, ///< bytes
+    LARGE_BLOCK = 4 << 20 ///< bytes from which blocks begin on large pages
 };
 
 typedef struct header
@@ -40,9 +40,9 @@ static void *c_allocate(void *context, size_t size, size_t alignment)
 #ifdef MADV_HUGEPAGE
     if (size >= LARGE_BLOCK)
     {
-        size_t whole = (size + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
-        void *block = aligned_alloc(LARGE_PAGE, whole);
-        if (block) (void)madvise(block, whole, MADV_HUGEPAGE); // a wish; a system that does not grant it keeps small pages
+        void *block = NULL;
+        if (posix_memalign(&block, LARGE_PAGE, size) != 0) return NULL;
+        (void)madvise(block, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE); // a wish; a system that does not grant it keeps small pages
         return block;
     }
 #endif

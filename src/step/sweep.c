@@ -40,22 +40,31 @@ static pls_status judge(pls_world *world, const pls_drift_report *total, bool mo
 
 // ---- the beginning of a step ---------------------------------------------------------------------------------------------------------------------------
 
-pls_status pls_begin_bodies(pls_world *world)
+/// Of a team, or alone. Small worlds do without a team, and so in sweeps: one of a single thread, too, is made and waits at the end of its loops by calls of the system.
+static void begin_blocks(pls_world *world, pls_drift_report *total)
 {
     pls_bodies *bodies = &world->bodies;
-    pls_drift_report total = {0.0, 0.0};
-#pragma omp parallel if (bodies->count > SERIAL_BLOCKS * BODY_BLOCK)
-    {
-        pls_drift_report mine = {0.0, 0.0}, part;
+    pls_drift_report mine = {0.0, 0.0}, part;
 #pragma omp for schedule(static)
-        for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
-        {
-            PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
-            add_report(&mine, &part);
-        }
-#pragma omp critical(pls_drift_report)
-        add_report(&total, &mine);
+    for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
+    {
+        PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
+        add_report(&mine, &part);
     }
+#pragma omp critical(pls_drift_report)
+    add_report(total, &mine);
+}
+
+pls_status pls_begin_bodies(pls_world *world)
+{
+    pls_drift_report total = {0.0, 0.0};
+    if (world->bodies.count > SERIAL_BLOCKS * BODY_BLOCK)
+    {
+#pragma omp parallel
+        begin_blocks(world, &total);
+    }
+    else
+        begin_blocks(world, &total);
     return judge(world, &total, true);
 }
 
@@ -404,9 +413,15 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     pls_barrier_init(&s.walls_known);
     pls_barrier_init(&s.contacts_known);
     pls_barrier_init(&s.step_done);
-#pragma omp parallel if (!list->alone && (list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || \
-                                          world->bodies.count > SERIAL_BLOCKS * BODY_BLOCK))
-    take_part(&s, omp_get_thread_num(), omp_get_num_threads());
+    const bool large =
+        list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || world->bodies.count > SERIAL_BLOCKS * BODY_BLOCK;
+    if (large && !list->alone)
+    {
+#pragma omp parallel
+        take_part(&s, omp_get_thread_num(), omp_get_num_threads());
+    }
+    else
+        take_part(&s, 0, 1);
     pls_barrier_destroy(&s.walls_known);
     pls_barrier_destroy(&s.contacts_known);
     pls_barrier_destroy(&s.step_done);
