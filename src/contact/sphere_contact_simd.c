@@ -35,8 +35,9 @@
 #include <string.h>
 
 enum {
-    FETCH_AHEAD = 48, ///< candidates of sparse blocks and walls; within PLS_PAIR_REACH
-    WHOLE_FROM = 4,   ///< sixteenths of a block that must have touched at the last step for whole vectors to be quicker
+    FETCH_AHEAD = 48,                    ///< candidates of sparse blocks and walls; within PLS_PAIR_REACH
+    LISTS_AHEAD = 4 * PLS_CONTACT_BLOCK, ///< candidates by which the list itself is fetched ahead in vast worlds
+    WHOLE_FROM = 4,                      ///< sixteenths of a block that must have touched at the last step for whole vectors to be quicker
 };
 
 static inline pls_v4 flip_first_three(pls_v4 a) { return (pls_v4)((pls_v4i)a ^ (pls_v4i){INT64_MIN, INT64_MIN, INT64_MIN, 0}); }
@@ -189,6 +190,24 @@ static inline __attribute__((always_inline)) void fetch_ends(const pls_pair_list
         __builtin_prefetch(&in->before[lower], 0, 2);
         __builtin_prefetch(&in->orientation[lower], 0, 2);
     }
+}
+
+/// The list itself passes once, in a dozen of streams of which some come to a line per block: too slow to be noticed by the processor, and each line that is missing when what it tells
+/// is to be fetched holds up all. A turn's part, and what comes once per block. (What is fetched need not be there.)
+static inline __attribute__((always_inline)) void fetch_rows_of_list(const pls_pair_list *list, size_t c)
+{
+    __builtin_prefetch(&list->row_i[c + LISTS_AHEAD]);
+    __builtin_prefetch(&list->row_j[c + LISTS_AHEAD]);
+}
+static inline __attribute__((always_inline)) void fetch_list(const pls_pair_list *list, const pls_pair_block *block, const uint32_t *coming)
+{
+    const size_t number = (size_t)(block - list->block);
+    __builtin_prefetch(&list->place[(block->first + LISTS_AHEAD) / 8]);
+    __builtin_prefetch(&list->touch[(block->first + 2 * LISTS_AHEAD) / 8]);
+    __builtin_prefetch(&list->ended[(block->first + 2 * LISTS_AHEAD) / 8]);
+    __builtin_prefetch(&list->block[number + 8]);
+    __builtin_prefetch(&list->fetch_start[number + 16]);
+    for (size_t k = 64; k < 128; k += 16) __builtin_prefetch(coming + k);
 }
 
 /// Rows of both bodies to columns over contacts: of candidates k .. of the block (`whole`), or of the picked contacts k .. ; to place m of the arrays.
@@ -741,6 +760,7 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
     const uint32_t *coming = pairs.fetch_row + pairs.fetch_start[next];
     const size_t per_turn = input.large ? (pairs.fetch_start[next + 1] - pairs.fetch_start[next] + turns - 1) / turns : 0;
     double *old = pls_pair_history(&pairs, section, first), *kept = old;
+    if (input.vast) fetch_list(&pairs, block, coming);
     for (size_t turn = 0; turn < count + SETTLE; turn += 8)
     {
         size_t k = turn, m = k % RING;
@@ -768,7 +788,11 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
         {
             fetch_bodies(&input, coming, per_turn);
             coming += per_turn;
-            if (input.vast) fetch_ends(&pairs, &input, first + k + PLS_CONTACT_BLOCK);
+            if (input.vast)
+            {
+                fetch_ends(&pairs, &input, first + k + PLS_CONTACT_BLOCK);
+                fetch_rows_of_list(&pairs, first + k);
+            }
 #pragma GCC unroll 2
             for (size_t v = 0; v < 8; v += PLS_W)
             {
