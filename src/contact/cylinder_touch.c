@@ -18,16 +18,16 @@
 #include "shape/builtin.h"
 
 enum {
-    FACES = 32,           ///< most of a body
-    CORNERS = 2 * FACES,  ///< most of a polygon: four, and one more for each face
-    PLACES = 8 * CORNERS, ///< most where the outline changes
+    FACES = 64,          ///< most of a body
+    CORNERS = 2 * FACES, ///< room for a polygon: it has four corners, and one more for each face that cuts it
+    PLACES = 16 * FACES, ///< most where the outline changes: of the cells of so many faces never as many meet A
 };
-
-/// Of A's size: rounding does not reach this.
-static const double blur = 2e-15;
 
 /// Of A's radius: that much beside the overlap a corner may still be one of it. One too many is no harm.
 static const double spare = 1e-7;
+
+/// Of u: places nearer to each other are one; what lies between has no volume.
+static const double one_place = 1e-13;
 
 /// Longest piece for one set of Gauss points: of the rational functions of u about 1e-15 is left.
 static const double longest_piece = 0.5;
@@ -45,11 +45,14 @@ static double depth_at(const pls_half_space *h, pls_vec3 x) { return h->offset -
 
 // ---- where the outline changes ------------------------------------------------------------------------------------------------------------------------------
 
+/// Where many faces meet, all threes of them meet in the same corner.
 static void add_place(cylinder *q, double u)
 {
-    if (q->places == PLACES) return;
-    int k = q->places++;
-    for (; k > 0 && q->place[k - 1] > u; --k) q->place[k] = q->place[k - 1];
+    int k = q->places;
+    while (k > 0 && q->place[k - 1] > u) --k;
+    const bool known = (k > 0 && u - q->place[k - 1] < one_place) || (k < q->places && q->place[k] - u < one_place);
+    if (known || q->places == PLACES) return;
+    for (int j = q->places++; j > k; --j) q->place[j] = q->place[j - 1];
     q->place[k] = u;
 }
 
@@ -173,7 +176,7 @@ static int clip(const corner *p, int count, const slope *s, bool border, corner 
     const corner *now = &p[count - 1];
     double at_now = value_at(s, now);
     bool in_now = at_now > 0.0 || (border && at_now == 0.0);
-    for (int k = 0; k < count; ++k)
+    for (int k = 0; k < count && left < CORNERS - 1; ++k) // rounding errors of corners on the line may add some, never so many
     {
         const corner *next = &p[k];
         const double at_next = value_at(s, next);
@@ -293,7 +296,7 @@ static void integrate(const cylinder *q, pls_overlap_integrals *P)
 
 static bool has_faces(const pls_shape *s)
 {
-    return s->convex && s->polytope && s->polytope->face_count > 2 && s->polytope->face_count <= PLS_MOST_FACES && s->margin == 0.0;
+    return s->convex && s->polytope && s->polytope->face_count > 2 && s->polytope->face_count <= FACES && s->margin == 0.0;
 }
 
 /// Planes about a's position, in the world.
@@ -310,7 +313,6 @@ static int planes_of_body(const pls_posed *a, const pls_posed *b, double depth, 
                      reach = radius * across + half_length * fabs(along);
         // Moved by the depth A leaves B, so that no point of the overlap is deeper in B.
         if (offset - reach > depth * (1.0 + 1e-6) + 1e-9 * radius) continue;
-        if (count == FACES) return FACES + 1;
         plane[count++] = (pls_half_space){n, offset};
     }
     return count;
@@ -380,7 +382,6 @@ static bool cylinder_on(const pls_posed *a, const pls_posed *b, const pls_depth 
         q.planes = pls_facet_prism(b, a->position, a->position, q.plane);
     else
         q.faces = q.planes = planes_of_body(a, b, depth->delta, R, half, q.plane);
-    if (q.planes > FACES) return false;
     if (plane || facet) q.plane[0].offset += margin, towards = pls_scale(q.plane[0].normal, -1.0);
 
     const pls_vec3 lean = pls_sub(towards, pls_scale(a->z, pls_dot(a->z, towards)));
@@ -399,7 +400,7 @@ static bool cylinder_on(const pls_posed *a, const pls_posed *b, const pls_depth 
     find_places(&q);
     integrate(&q, &P);
     pls_touch t = {.delta = 0.0};
-    if (depth->delta <= 0.0 || !pls_overlap_touch(&P, options, blur * a->size, false, &t))
+    if (depth->delta <= 0.0 || !pls_overlap_touch(&P, options, PLS_OVERLAP_BLUR * a->size, false, &t))
         pls_overlap_none(depth, &t);
     else
     {

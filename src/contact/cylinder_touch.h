@@ -6,8 +6,8 @@
 #include "contact/narrow_phase.h"
 
 /// The contact by options->faces (VOLUME or MANIFOLD) of a cylinder and a half-space, a triangle of a wall, or a body of plane faces, whose penetration depth is known; half-spaces
-/// and triangles come as B. Rounded cylinders only against walls, and with rounding of at most half their radius and a quarter of their length; rounded bodies of plane faces not.
-/// False for other pairs, and where more than 32 faces of a body are nearer to the cylinder than it is deep: the point law stands, and nothing is written.
+/// and triangles come as B. Rounded cylinders only against walls, and with rounding of at most half their radius and a quarter of their length; bodies of plane faces only if they
+/// are not rounded and have at most 64 faces. False for other pairs, always for the same ones: the point law stands, and nothing is written.
 bool pls_cylinder_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out);
 
 #endif

@@ -39,9 +39,6 @@
 /// Of a body's size: of shallower overlaps rounding leaves no moments, and their force is nothing.
 static const double least_depth = 1e-11;
 
-/// Of a body's size: faces this near to each other may count as one plane.
-static const double blur = 2e-15;
-
 /// Of a body's size: the conditions of a record hold by this at least, far above what rounding does to corners.
 static const double record_margin = 1e-9;
 
@@ -50,7 +47,6 @@ static const double record_slack = 0.5;
 
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
-/// A triangle or segment of a wall: two faces back to back.
 static bool has_faces(const pls_shape *s)
 {
     return s->convex && s->polytope && s->polytope->face_count > 2 && s->polytope->face_count <= PLS_MOST_FACES &&
@@ -209,7 +205,7 @@ static void add_seams(const pls_posed *a, const pls_posed *b, const slab *s, con
         for (int f = 0; f < near[k].faces; ++f)
             if (outline_is_listed(t, record->seen[k], near[k].face[f].outline)) list[count++] = f;
         double seam[2];
-        PLS_SIMD_SELECT(pls_overlap_seams)(&near[k], list, count, &near[1 - k], 3, blur * s->size, seam);
+        PLS_SIMD_SELECT(pls_overlap_seams)(&near[k], list, count, &near[1 - k], 3, PLS_OVERLAP_BLUR * s->size, seam);
         out->by_depth.energy += 0.5 * seam[0] / 2.0, out->by_its_square.energy += 0.5 * seam[1] / 3.0;
     }
 }
@@ -286,9 +282,9 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
     if (facet || !by_record(a, b, &between, squares, record, &P))
     {
         take_both(a, b, &between, &A, &B);
-        PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, blur * size, &P);
+        PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, PLS_OVERLAP_BLUR * size, &P);
     }
-    if (!pls_overlap_touch(&P, options, blur * size, a->shape->dimension == 2, out)) return false;
+    if (!pls_overlap_touch(&P, options, PLS_OVERLAP_BLUR * size, a->shape->dimension == 2, out)) return false;
     out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
     return true;
 }

@@ -5,6 +5,9 @@
 #include "contact/convex.h"
 #include "contact/overlap.h"
 
+/// Of a body's size: faces this near to each other may count as one plane; rounding does not reach it.
+#define PLS_OVERLAP_BLUR 2e-15
+
 /// The touch by options->faces (VOLUME or MANIFOLD) and its area, about the origin and in the axes of the integrals; `depth` is left as it is. `flat`: in 2D. What is thinner
 /// than rounding errors, `blur`, is none [m]. False if nothing overlaps, or less than numbers tell.
 bool pls_overlap_touch(pls_overlap_integrals *P, const pls_narrow_options *options, double blur, bool flat, pls_touch *out);

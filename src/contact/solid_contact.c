@@ -22,8 +22,8 @@
 
 #include "contact/solid_contact.h"
 
-#include "contact/touch_area.h"
 #include "contact/overlap_record.h"
+#include "contact/touch_area.h"
 #include "math/small_turn.h"
 
 #include <string.h>

@@ -18,7 +18,7 @@ static inline void pls_small_turn(double angle, double *sine, double *cosine)
     *cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0 - square * (1.0 / 40320.0))));
 }
 
-/// Angle by its sine, from sine and cosine of an angle in 0 .. pi; 1 at zero. As above up to the same sine.
+/// An angle of 0 or more and less than pi, divided by its sine; 1 at zero. As above up to the same sine.
 static inline double pls_angle_by_sine(double sine, double cosine)
 {
     if (!(sine < 1.0 / 32.0 && cosine > 0.0)) return atan2(sine, cosine) / sine;

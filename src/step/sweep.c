@@ -40,31 +40,33 @@ static pls_status judge(pls_world *world, const pls_drift_report *total, bool mo
 
 // ---- the beginning of a step ---------------------------------------------------------------------------------------------------------------------------
 
-/// Of a team, or alone. Small worlds do without a team, and so in sweeps: one of a single thread, too, is made and waits at the end of its loops by calls of the system.
-static void begin_blocks(pls_world *world, pls_drift_report *total)
+static void begin_block(pls_world *world, size_t b, pls_drift_report *total)
 {
     pls_bodies *bodies = &world->bodies;
-    pls_drift_report mine = {0.0, 0.0}, part;
-#pragma omp for schedule(static)
-    for (size_t b = 0; b < pls_block_count(bodies->count, BODY_BLOCK); ++b)
-    {
-        PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
-        add_report(&mine, &part);
-    }
-#pragma omp critical(pls_drift_report)
-    add_report(total, &mine);
+    pls_drift_report part;
+    PLS_SIMD_SELECT(pls_verlet_begin)(bodies, b * BODY_BLOCK, pls_block_end(b, BODY_BLOCK, bodies->count), world->dt, &part);
+    add_report(total, &part);
 }
+
+/// Small worlds do without a team, and so in sweeps: even one of a single thread has to be made, and waits at the end of its loops by calls of the system. Nor may their loops be those
+/// of a team, or they would be shared out to the team that a caller may have.
+static bool needs_team(size_t blocks) { return blocks > SERIAL_BLOCKS; }
 
 pls_status pls_begin_bodies(pls_world *world)
 {
+    const size_t blocks = pls_block_count(world->bodies.count, BODY_BLOCK);
     pls_drift_report total = {0.0, 0.0};
-    if (world->bodies.count > SERIAL_BLOCKS * BODY_BLOCK)
-    {
+    if (needs_team(blocks))
 #pragma omp parallel
-        begin_blocks(world, &total);
+    {
+        pls_drift_report mine = {0.0, 0.0};
+#pragma omp for schedule(static)
+        for (size_t b = 0; b < blocks; ++b) begin_block(world, b, &mine);
+#pragma omp critical(pls_drift_report)
+        add_report(&total, &mine);
     }
     else
-        begin_blocks(world, &total);
+        for (size_t b = 0; b < blocks; ++b) begin_block(world, b, &total);
     return judge(world, &total, true);
 }
 
@@ -318,21 +320,35 @@ static void finish_waiting(sweep *s, share *mine)
     }
 }
 
+static void pose_solids(sweep *s, size_t b)
+{
+    pls_solid_list *list = &s->world->solids;
+    pls_solid_pose(list, &s->input, &s->world->bodies, s->world->shape_of, b * POSE_BLOCK, pls_block_end(b, POSE_BLOCK, list->row_count));
+}
+
+static void work_solids(sweep *s, share *mine, size_t b)
+{
+    pls_solid_list *list = &s->world->solids;
+    pls_solid_contacts(list, &s->input, &list->block[b], &s->world->work[mine->thread], &mine->counts);
+    if (s->input.dt > 0.0 && mine->status == PLS_OK)
+        mine->status = pls_find_parted_solids(s->world, &s->input, &list->block[b], &s->world->parted[mine->thread]);
+}
+
 /// Contacts of solids, all of them: they are few, and each costs far more than passing a body.
 static void sweep_solids(sweep *s, share *mine)
 {
-    pls_solid_list *list = &s->world->solids;
-#pragma omp for schedule(static)
-    for (size_t b = 0; b < pls_block_count(list->row_count, POSE_BLOCK); ++b)
-        pls_solid_pose(list, &s->input, &s->world->bodies, s->world->shape_of, b * POSE_BLOCK,
-                       pls_block_end(b, POSE_BLOCK, list->row_count));
-#pragma omp for schedule(dynamic, 1)
-    for (size_t b = 0; b < list->block_count; ++b)
+    const pls_solid_list *list = &s->world->solids;
+    const size_t poses = pls_block_count(list->row_count, POSE_BLOCK);
+    if (mine->threads == 1)
     {
-        pls_solid_contacts(list, &s->input, &list->block[b], &s->world->work[mine->thread], &mine->counts);
-        if (s->input.dt > 0.0 && mine->status == PLS_OK)
-            mine->status = pls_find_parted_solids(s->world, &s->input, &list->block[b], &s->world->parted[mine->thread]);
+        for (size_t b = 0; b < poses; ++b) pose_solids(s, b);
+        for (size_t b = 0; b < list->block_count; ++b) work_solids(s, mine, b);
+        return;
     }
+#pragma omp for schedule(static)
+    for (size_t b = 0; b < poses; ++b) pose_solids(s, b);
+#pragma omp for schedule(dynamic, 1)
+    for (size_t b = 0; b < list->block_count; ++b) work_solids(s, mine, b);
 }
 
 static void add_counts(pls_narrow_counts *total, const pls_narrow_counts *part)
@@ -439,8 +455,8 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     pls_barrier_init(&s.walls_known);
     pls_barrier_init(&s.contacts_known);
     pls_barrier_init(&s.step_done);
-    const bool large =
-        list->block_count > SERIAL_BLOCKS || world->solids.block_count > SERIAL_BLOCKS || world->bodies.count > SERIAL_BLOCKS * BODY_BLOCK;
+    const bool large = needs_team(list->block_count) || needs_team(world->solids.block_count) ||
+                       needs_team(pls_block_count(world->bodies.count, BODY_BLOCK));
     if (large && !list->alone)
     {
 #pragma omp parallel

@@ -16,7 +16,8 @@ typedef struct pls_drift_report
 PLS_SIMD_DECLARE(void, pls_verlet_begin, pls_bodies *bodies, size_t first, size_t last, double dt, pls_drift_report *report);
 
 /// Forces of contacts gathered in order of partner numbers, added to the given body forces (arrays of 4 per row of the block, or null); second half kick;
-/// dissipation booked; for rows first .. last. With `go_on` each row begins its next step at once, as pls_verlet_begin does, and displacements are reported.
+/// dissipation booked; for rows first .. last. With `go_on` each row begins its next step at once, as pls_verlet_begin does, and displacements are reported;
+/// its forces of now, which nobody asks for then, are not stored.
 PLS_SIMD_DECLARE(void, pls_verlet_finish, pls_bodies *bodies, pls_pair_list *list, size_t first, size_t last, double dt,
                  const double *force, const double *torque, bool go_on, pls_drift_report *report);
 

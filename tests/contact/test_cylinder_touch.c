@@ -182,7 +182,7 @@ static void facets_of_a_floor_add_up_to_a_plane(void **state)
     const pls_posed ground = ground_of(plane);
     for (int round = 0; round < 20; ++round)
     {
-        pls_shape *can = solids_cylinder(0.3, 0.8, round & 1 ? 0.05 : 0.0);
+        pls_shape *can = solids_cylinder(0.3, 0.8, round & 4 ? 0.05 : 0.0);
         const double angle = round % 4 == 0 ? 0.0 : round % 4 == 1 ? M_PI_2 : solids_uniform(0, 6);
         pls_posed p =
             at(can, pls_vec(solids_uniform(-0.2, 0.2), 0.0, 0.0), solids_turn(pls_unit(pls_vec(1, solids_uniform(-1, 1), 0)), angle));
@@ -258,6 +258,38 @@ static void energies_are_those_of_the_points_of_the_overlap(void **state)
     assert_near(worst, 0.0, 1e-2);
 }
 
+/// A pyramid whose top, where many faces meet, stands in a cylinder's end or side: forces are the gradient of the energy, and the top is one place, not one per three faces.
+static void a_top_of_many_faces(void **state)
+{
+    (void)state;
+    enum { SIDES = 24 };
+    pls_vec3 corner[SIDES + 1];
+    for (int k = 0; k < SIDES; ++k) corner[k] = pls_vec(0.5 * cos(2.0 * M_PI * k / SIDES), 0.5 * sin(2.0 * M_PI * k / SIDES), -0.3);
+    corner[SIDES] = pls_vec(0.0, 0.0, 0.2);
+    pls_shape *can = solids_cylinder(0.3, 0.8, 0.0), *pyramid = solids_hull(3, corner, SIDES + 1, 0.0);
+    assert_true(pyramid->polytope->face_count == SIDES + 1);
+    for (int lying = 0; lying < 2; ++lying)
+    {
+        const double deep = 0.02, up = 0.2 + (lying ? 0.3 : 0.4) - deep, h = 1e-5 * deep;
+        const pls_quat turn = lying ? solids_turn(pls_vec(0, 1, 0), M_PI_2) : solids_turn(pls_vec(1, 0, 0), 0.05);
+        const pls_posed q = at(pyramid, pls_vec(0, 0, 0), pls_quat_identity());
+        for (pls_faces faces = PLS_FACES_MANIFOLD; faces <= PLS_FACES_VOLUME; ++faces)
+        {
+            double energy[2];
+            for (int k = 0; k < 2; ++k)
+            {
+                const pls_posed p = at(can, pls_vec(0.01, 0.02, up + (k ? h : -h)), turn);
+                energy[k] = 0.5 * pow(touch_by(&p, &q, faces).energy_delta, 2);
+            }
+            const pls_posed p = at(can, pls_vec(0.01, 0.02, up), turn);
+            const pls_touch t = touch_by(&p, &q, faces);
+            assert_true(t.delta > 0.0 && t.depth > 0.5 * deep);
+            assert_near(-t.delta * t.normal.z / ((energy[0] - energy[1]) / (2.0 * h)), 1.0, 1e-6);
+        }
+    }
+    pls_shape_free(can), pls_shape_free(pyramid);
+}
+
 /// Rounded cylinders and rounded boxes touch at a point, and all do when that is what is asked for.
 static void other_pairs_are_left_alone(void **state)
 {
@@ -284,6 +316,7 @@ int main(void)
         cmocka_unit_test(a_wide_face_is_a_half_space),
         cmocka_unit_test(facets_of_a_floor_add_up_to_a_plane),
         cmocka_unit_test(energies_are_those_of_the_points_of_the_overlap),
+        cmocka_unit_test(a_top_of_many_faces),
         cmocka_unit_test(other_pairs_are_left_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
