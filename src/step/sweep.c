@@ -1,9 +1,9 @@
 // sweep.c -- contacts, and forces and velocities of the end of a step, in one sweep over the pair list: bodies are finished as soon as their last contact is
 // known, while it is in the cache. Whatever the order, each contact is computed from bodies that are not yet finished, and each body from all of its contacts.
 //
-// Threads have a share of the list each, and help where others are late. They wait for each other twice per step:
+// Threads have a share of the list each, and help where others are late. They wait for each other twice per step, with solids four times:
 //
-//     walls, own blocks of pairs and the bodies that are done with, blocks of others | bodies with pairs in several shares | is there a next step to go on with?
+//     poses of solids | contacts of solids | walls, own blocks of pairs and the bodies that are done with, blocks of others | bodies with pairs in several shares | is there a next step to go on with?
 //
 // and stay together for all steps that run into each other: waking a team costs as much as the work of some hundred bodies.
 
@@ -93,10 +93,12 @@ typedef struct sweep
     pls_world *world;
     pls_contact_input input;
     void (*contact_block)(pls_pair_list *list, const pls_contact_input *input, const pls_pair_block *block, pls_contact_work *work);
-    double time;             ///< of the forces [s]
-    uint64_t end;            ///< step that the caller wants to stop at
-    bool go_on;              ///< each body begins its next step at once, while its rows are at hand
-    bool again;              ///< the next step is swept too
+    double time;        ///< of the forces [s]
+    uint64_t end;       ///< step that the caller wants to stop at
+    bool go_on;         ///< each body begins its next step at once, while its rows are at hand
+    bool again;         ///< the next step is swept too
+    size_t next_solids; ///< block of contacts of solids that nobody has taken
+    pls_barrier solids_posed, solids_known;
     pls_barrier walls_known; ///< before all threads have done their contacts with walls, no body may be finished
     pls_barrier contacts_known, step_done;
     _Alignas(64) pls_drift_report total;
@@ -338,17 +340,11 @@ static void work_solids(sweep *s, share *mine, size_t b)
 static void sweep_solids(sweep *s, share *mine)
 {
     const pls_solid_list *list = &s->world->solids;
-    const size_t poses = pls_block_count(list->row_count, POSE_BLOCK);
-    if (mine->threads == 1)
-    {
-        for (size_t b = 0; b < poses; ++b) pose_solids(s, b);
-        for (size_t b = 0; b < list->block_count; ++b) work_solids(s, mine, b);
-        return;
-    }
-#pragma omp for schedule(static)
-    for (size_t b = 0; b < poses; ++b) pose_solids(s, b);
-#pragma omp for schedule(dynamic, 1)
-    for (size_t b = 0; b < list->block_count; ++b) work_solids(s, mine, b);
+    const size_t poses = pls_block_count(list->row_count, POSE_BLOCK), thread = (size_t)mine->thread, threads = (size_t)mine->threads;
+    for (size_t b = poses * thread / threads; b < poses * (thread + 1) / threads; ++b) pose_solids(s, b);
+    pls_barrier_pass(&s->solids_posed, mine->threads, mine->round);
+    for (size_t b; (b = __atomic_fetch_add(&s->next_solids, 1, __ATOMIC_RELAXED)) < list->block_count;) work_solids(s, mine, b);
+    pls_barrier_pass(&s->solids_known, mine->threads, mine->round);
 }
 
 static void add_counts(pls_narrow_counts *total, const pls_narrow_counts *part)
@@ -416,6 +412,7 @@ static void close_sweep(sweep *s)
     pls_domain_at(&world->domain, s->time);
     s->go_on = may_go_on(world, s->end);
     note_kept(s);
+    s->next_solids = 0;
     s->total = (pls_drift_report){0.0, 0.0};
 }
 
@@ -452,6 +449,8 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     s.go_on = may_go_on(world, end);
     note_kept(&s);
     for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
+    pls_barrier_init(&s.solids_posed);
+    pls_barrier_init(&s.solids_known);
     pls_barrier_init(&s.walls_known);
     pls_barrier_init(&s.contacts_known);
     pls_barrier_init(&s.step_done);
@@ -464,6 +463,8 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     }
     else
         take_part(&s, 0, 1);
+    pls_barrier_destroy(&s.solids_posed);
+    pls_barrier_destroy(&s.solids_known);
     pls_barrier_destroy(&s.walls_known);
     pls_barrier_destroy(&s.contacts_known);
     pls_barrier_destroy(&s.step_done);
