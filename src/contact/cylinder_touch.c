@@ -416,7 +416,7 @@ static bool cylinder_on(const pls_posed *a, const pls_posed *b, const pls_depth 
         t.point = pls_add(origin, pls_add(pls_add(pls_scale(e[0], x.x), pls_scale(e[1], x.y)), pls_scale(e[2], x.z)));
         t.middle = pls_add(origin, pls_add(pls_add(pls_scale(e[0], m.x), pls_scale(e[1], m.y)), pls_scale(e[2], m.z)));
     }
-    t.depth = depth->delta;
+    t.depth = t.reach = depth->delta;
     *out = t;
     return true;
 }

@@ -185,64 +185,148 @@ static bool outline_is_listed(const pls_polytope *t, uint64_t faces, const uint3
     return false;
 }
 
-/// The rest of energies where no point is common to all faces that depth counts from. Not `now`: when somebody looks, nobody does at each step.
-static void add_seams(const pls_posed *a, const pls_posed *b, const slab *s, const pls_overlap_record *record, bool now,
-                      pls_overlap_integrals *out)
+/// A record and where the two bodies are, about an origin that follows from these alone: no answer depends on how a record was come by.
+typedef struct posed_record
 {
+    const pls_posed *body[2];
+    const pls_overlap_record *record;
+    pls_record_bodies about;
+    pls_vec3 origin;
+    double size;
+} posed_record;
+
+static bool is_wall(const pls_posed *b) { return b->shape->ops->unbounded; }
+
+/// Bodies about A's position; of the margin of the bodies.
+static pls_record_bodies bodies_of(const pls_posed *a, const pls_posed *b, double size)
+{
+    pls_record_bodies c = {.body = {a, b}, .wall = is_wall(b), .margin = record_margin * size};
+    if (c.wall) c.front = pls_posed_gradient(b, b->position);
+    c.start[0] = pls_scale(c.front, -a->shape->margin * a->scale), c.start[1] = pls_sub(b->position, a->position);
+    return c;
+}
+
+static double size_of(const pls_posed *a, const pls_posed *b) { return is_wall(b) ? a->size : fmax(a->size, b->size); }
+
+static posed_record pose_record(const pls_posed *a, const pls_posed *b, const pls_overlap_record *record)
+{
+    posed_record p = {.body = {a, b}, .record = record, .size = size_of(a, b)};
+    p.about = bodies_of(a, b, p.size);
+    const pls_vec3 shift = pls_record_origin(&p.about, record);
+    for (int k = 0; k < 2; ++k) p.about.start[k] = pls_sub(p.about.start[k], shift);
+    p.origin = pls_add(a->position, shift);
+    return p;
+}
+
+/// The overlap along a direction from A to B, whichever: nothing of it lies under a face from which it is further than its extent. Heights are of room for both bodies.
+static slab slab_along(const posed_record *p, pls_vec3 n, double (*height)[PLS_MOST_CORNERS])
+{
+    double reach[2] = {0.0, 0.0};
+    for (int k = 0; k < (p->about.wall ? 1 : 2); ++k)
+    {
+        const pls_posed *body = p->body[k];
+        const pls_vec3 up = k == 0 ? n : pls_scale(n, -1.0);
+        reach[k] = PLS_SIMD_SELECT(pls_overlap_heights)(body->shape->polytope, pls_scale(pls_posed_turn_back(body, up), body->scale),
+                                                        pls_dot(p->about.start[k], up), height[k]);
+    }
+    const double deep = reach[0] + reach[1];
+    return (slab){.origin = p->origin,
+                  .n = n,
+                  .height = {height[0], p->about.wall ? NULL : height[1]},
+                  .lowest = {-reach[1] - deep, -reach[0] - deep},
+                  .deep = deep,
+                  .size = p->size};
+}
+
+/// The rest of energies where no point is common to all faces that depth counts from. Not `now`: when somebody looks, nobody does at each step.
+static void add_seams(const posed_record *p, bool now, pls_overlap_integrals *out)
+{
+    const pls_overlap_record *record = p->record;
     if (record->apex[0].kind != PLS_NO_APEX && record->apex[1].kind != PLS_NO_APEX) return;
     if (!now)
     {
         out->by_depth.energy = INFINITY;
         return;
     }
+    double height[2][PLS_MOST_CORNERS];
+    const double area = pls_length(out->area);
+    const slab s = slab_along(p, area > 0.0 ? pls_scale(out->area, 1.0 / area) : pls_vec(1.0, 0.0, 0.0), height);
     pls_near_body near[2];
-    take_both(a, b, s, &near[0], &near[1]);
+    take_both(p->body[0], p->body[1], &s, &near[0], &near[1]);
     for (int k = 0; k < 2; ++k)
     {
         if (record->apex[k].kind != PLS_NO_APEX) continue;
-        const pls_polytope *t = (k == 0 ? a : b)->shape->polytope;
+        const pls_polytope *t = p->body[k]->shape->polytope;
         int list[PLS_MOST_FACES], count = 0;
         for (int f = 0; f < near[k].faces; ++f)
             if (outline_is_listed(t, record->seen[k], near[k].face[f].outline)) list[count++] = f;
         double seam[2];
-        PLS_SIMD_SELECT(pls_overlap_seams)(&near[k], list, count, &near[1 - k], 3, PLS_OVERLAP_BLUR * s->size, seam);
+        PLS_SIMD_SELECT(pls_overlap_seams)(&near[k], list, count, &near[1 - k], 3, PLS_OVERLAP_BLUR * s.size, seam);
         out->by_depth.energy += 0.5 * seam[0] / 2.0, out->by_its_square.energy += 0.5 * seam[1] / 3.0;
     }
 }
 
-/// The integrals by what the last step found of the faces, edges and corners about, or by what is found now. False if they do not tell.
-static bool by_record(const pls_posed *a, const pls_posed *b, const slab *s, bool squares, pls_overlap_record *record,
-                      pls_overlap_integrals *out)
+/// False if the record does not fit. That no faces matter but those it has in view is asked elsewhere.
+static bool recall(const posed_record *p, bool squares, bool energies, pls_overlap_integrals *out)
 {
-    const bool wall = b->shape->ops->unbounded;
-    if (!pls_has_record(a->shape) || (!wall && !pls_has_record(b->shape))) return false;
+    if (!PLS_SIMD_SELECT(pls_overlap_recall)(&p->about, p->record, squares, out)) return false;
+    add_seams(p, squares || energies, out);
+    return true;
+}
+
+/// Vertices whose faces matter. A little more than can be nearest, so that no face without them comes near to being so: whoever keeps more faces sees the same.
+static bool has_in_view(const posed_record *p, const slab *s)
+{
+    for (int k = 0; k < (p->about.wall ? 1 : 2); ++k)
+        if (high_vertices(p->body[k], s->height[k], s->lowest[k] - 4.0 * p->about.margin) & ~p->record->high[k]) return false;
+    return true;
+}
+
+static bool can_have_record(const pls_posed *a, const pls_posed *b)
+{
+    return pls_has_record(a->shape) && (is_wall(b) || pls_has_record(b->shape));
+}
+
+/// The integrals by what an earlier step found of the faces, edges and corners about, or by what is found now. False if they do not tell.
+static bool by_record(const pls_posed *a, const pls_posed *b, const slab *s, bool squares, pls_overlap_record *record,
+                      pls_overlap_integrals *out, pls_vec3 *origin)
+{
+    if (!can_have_record(a, b)) return false;
+    if (record && record->known)
+    {
+        const posed_record p = pose_record(a, b, record);
+        *origin = p.origin;
+        if (has_in_view(&p, s) && recall(&p, squares, false, out)) return true;
+    }
     const pls_posed *body[2] = {a, b};
-    pls_record_bodies c = {.body = {a, b}, .wall = wall, .front = pls_scale(s->n, -1.0), .margin = record_margin * s->size};
-    uint64_t high[2] = {0, 0}, some[2] = {0, 0};
-    for (int k = 0; k < (wall ? 1 : 2); ++k)
+    pls_record_bodies c = bodies_of(a, b, s->size);
+    uint64_t some[2] = {0, 0};
+    for (int k = 0; k < (c.wall ? 1 : 2); ++k)
     {
-        c.start[k] = pls_add(pls_sub(body[k]->position, s->origin), pls_scale(s->n, body[k]->shape->margin * body[k]->scale));
-        // A little more than can be nearest, so that no face without them comes near to being so: whoever keeps more faces sees the same.
-        high[k] = high_vertices(body[k], s->height[k], s->lowest[k] - 4.0 * c.margin);
+        c.start[k] = pls_sub(c.start[k], pls_sub(s->origin, a->position));
+        some[k] = high_vertices(body[k], s->height[k], s->lowest[k] - record_slack * s->deep);
     }
-    if (record && record->known && !(high[0] & ~record->high[0]) && !(high[1] & ~record->high[1]) &&
-        PLS_SIMD_SELECT(pls_overlap_recall)(&c, record, squares, out))
-    {
-        add_seams(a, b, s, record, squares, out);
-        return true;
-    }
-    for (int k = 0; k < (wall ? 1 : 2); ++k) some[k] = high_vertices(body[k], s->height[k], s->lowest[k] - record_slack * s->deep);
     pls_overlap_record now;
-    if (!pls_overlap_find(&c, some, &now) || !PLS_SIMD_SELECT(pls_overlap_recall)(&c, &now, squares, out)) return false;
-    add_seams(a, b, s, &now, squares || !record, out);
+    if (!pls_overlap_find(&c, some, &now)) return false;
+    const posed_record p = pose_record(a, b, &now);
+    *origin = p.origin;
+    if (!recall(&p, squares, !record, out)) return false;
     if (record) *record = now;
     return true;
 }
 
-static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
-                        pls_overlap_record *record, pls_touch *out)
+static bool finish(pls_overlap_integrals *P, pls_vec3 origin, double size, const pls_posed *a, const pls_narrow_options *options,
+                   pls_touch *out)
 {
-    const bool plane = b->shape->ops->unbounded, facet = pls_is_facet(b->shape);
+    if (!pls_overlap_touch(P, options, PLS_OVERLAP_BLUR * size, a->shape->dimension == 2, out)) return false;
+    out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
+    return true;
+}
+
+static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
+                        pls_overlap_record *record, bool *recorded, pls_touch *out)
+{
+    const bool plane = is_wall(b), facet = pls_is_facet(b->shape);
     pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
     double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS];
     pls_vec3 n = depth->normal;
@@ -270,32 +354,34 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
         reach_b = take_heights(b, origin, pls_scale(n, -1.0), height_b);
     const double reach_a = take_heights(a, origin, n, height_a), deep = reach_a + reach_b;
     if (!(deep > least_depth * a->size)) return false;
-    const double size = plane ? a->size : fmax(a->size, b->size);
-    const bool squares = options->faces == PLS_FACES_MANIFOLD;
-    pls_overlap_integrals P;
+    const double size = size_of(a, b);
     const slab between = {.origin = origin,
                           .n = n,
                           .height = {height_a, plane || facet ? NULL : height_b},
                           .lowest = {-reach_b - deep, -reach_a - deep},
                           .deep = deep,
                           .size = size};
-    if (facet || !by_record(a, b, &between, squares, record, &P))
+    pls_overlap_integrals P;
+    pls_vec3 about;
+    if (!facet && by_record(a, b, &between, options->faces == PLS_FACES_MANIFOLD, record, &P, &about))
     {
-        take_both(a, b, &between, &A, &B);
-        PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, PLS_OVERLAP_BLUR * size, &P);
+        *recorded = finish(&P, about, size, a, options, out);
+        if (record) record->normal = out->normal;
+        return *recorded;
     }
-    if (!pls_overlap_touch(&P, options, PLS_OVERLAP_BLUR * size, a->shape->dimension == 2, out)) return false;
-    out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
-    return true;
+    take_both(a, b, &between, &A, &B);
+    PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, PLS_OVERLAP_BLUR * size, &P);
+    return finish(&P, origin, size, a, options, out);
 }
 
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
-                     pls_overlap_record *record, pls_touch *out)
+                     pls_overlap_record *record, bool *recorded, pls_touch *out)
 {
     double half[3];
-    const bool plane = b->shape->ops->unbounded, wall = plane || pls_is_facet(b->shape);
+    const bool plane = is_wall(b), wall = plane || pls_is_facet(b->shape);
     const bool faces = has_faces(a->shape) && (wall || (has_faces(b->shape) && a->shape->margin == 0.0 && b->shape->margin == 0.0));
     const bool cap = plane && options->faces == PLS_FACES_VOLUME && is_ellipsoid(a->shape, half);
+    *recorded = false;
     if (options->faces == PLS_FACES_POINT || (!faces && !cap)) return false;
     if (cap)
     {
@@ -304,8 +390,23 @@ bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
         else
             cap_law(a, half, pls_posed_gradient(b, b->position), b->position, options->face_area, out);
     }
-    else if (depth->delta <= 0.0 || !overlap_law(a, b, depth, options, record, out))
+    else if (depth->delta <= 0.0 || !overlap_law(a, b, depth, options, record, recorded, out))
         pls_overlap_none(depth, out);
-    out->depth = depth->delta;
+    out->depth = out->reach = depth->delta;
+    return true;
+}
+
+bool pls_faces_touch_again(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_overlap_record *record,
+                           pls_touch *out)
+{
+    if (!record->known) return false;
+    const posed_record p = pose_record(a, b, record);
+    double height[2][PLS_MOST_CORNERS];
+    const slab s = slab_along(&p, p.about.wall ? pls_scale(p.about.front, -1.0) : record->normal, height);
+    pls_overlap_integrals P;
+    if (!(s.deep > least_depth * a->size) || !has_in_view(&p, &s)) return false;
+    if (!recall(&p, options->faces == PLS_FACES_MANIFOLD, false, &P) || !finish(&P, p.origin, p.size, a, options, out)) return false;
+    record->normal = out->normal;
+    out->depth = INFINITY, out->reach = s.deep;
     return true;
 }

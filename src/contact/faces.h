@@ -14,7 +14,12 @@ enum { PLS_MOST_FACES = 256 };
 /// half-space also sphere, disc, ellipsoid and ellipse.
 /// Gives the area of touch too (`spread`): that of the overlap, weighted by its thickness.
 /// `record` (null: none) spares work if it is still that of the last step; the answer does not depend on it, but that without one there always is an energy.
+/// `recorded`: there is a record of what touches, so that the next answer may come from it alone.
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
-                     pls_overlap_record *record, pls_touch *out);
+                     pls_overlap_record *record, bool *recorded, pls_touch *out);
+
+/// The same from a record of these two bodies alone, without their penetration depth, which is not given then (INFINITY; `reach` is). False: this record does not tell.
+bool pls_faces_touch_again(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_overlap_record *record,
+                           pls_touch *out);
 
 #endif

@@ -415,7 +415,7 @@ bool pls_lines_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
     sums sum = {0};
     if (line_a || !line_b) add_edges(&sum, a, b, depth->normal, origin, -1.0);
     if (!wall && (line_b || !line_a)) add_edges(&sum, b, a, pls_scale(depth->normal, -1.0), origin, 1.0);
-    out->depth = depth->delta;
+    out->depth = out->reach = depth->delta;
     if (sum.power[3] > 0.0)
         line_law(&sum, a->shape->dimension == 2, origin, fmin(a->size, b->size), out);
     else

@@ -535,10 +535,11 @@ static void as_touch(const pls_depth *d, pls_touch *out)
                        .middle = point,
                        .weight = 1.0,
                        .energy_delta = d->delta,
-                       .depth = d->delta};
+                       .depth = d->delta,
+                       .reach = d->delta};
 }
 
-void pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state,
+bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state,
                            pls_overlap_record *record, pls_touch *out, pls_narrow_counts *counts)
 {
     const bool admm = options->solver == PLS_SOLVER_ADMM && a->shape->convex && b->shape->convex;
@@ -549,7 +550,17 @@ void pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     if (!admm || !by_admm(&q, options->tolerance, &d)) d = table[kind_of(a->shape)][kind_of(b->shape)](admm ? &cold : &q);
     as_touch(&d, out);
     // Where the pair has neither faces nor lines to speak of the point stands.
-    if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return;
-    if (pls_faces_touch(a, b, &d, options, record, out) || pls_cylinder_touch(a, b, &d, options, out)) return;
-    pls_lines_touch(a, b, &d, out);
+    bool recorded = false;
+    if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return false;
+    if (!pls_faces_touch(a, b, &d, options, record, &recorded, out) && !pls_cylinder_touch(a, b, &d, options, out))
+        pls_lines_touch(a, b, &d, out);
+    return recorded;
+}
+
+bool pls_narrow_phase_again(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_overlap_record *record,
+                            pls_touch *out, pls_narrow_counts *counts)
+{
+    if (!pls_faces_touch_again(a, b, options, record, out)) return false;
+    ++counts->queries;
+    return true;
 }

@@ -25,7 +25,8 @@ typedef struct pls_touch
     double weight;   ///< d(delta)/d(approach): 1 for points; laws of faces and lines have less or more (volume: A/A0)
     double
         energy_delta; ///< overlap at which a linear spring holds the energy of the contact; `delta` but for the laws of faces and lines; INFINITY: not asked for [m]
-    double depth;     ///< penetration depth, for guards [m]
+    double depth;     ///< penetration depth; INFINITY: not asked for [m]
+    double reach;     ///< the depth or more, for guards [m]
     double twist;     ///< couple about the normal that the laws of faces add, on B, by the normal force; on A the opposite; else 0 [m]
     double lever;     ///< radius at which all of an area's friction resists turning about the normal; 0 for a point and in 2D [m]
     double spread
@@ -35,12 +36,16 @@ typedef struct pls_touch
 /// What a pair may keep beside its state, for speed alone: no answer depends on it but for `energy_delta`, which may be left out (faces.h), and it may be lost any time. All zero: nothing (overlap_record.h).
 typedef struct pls_overlap_record pls_overlap_record;
 
-/// One contact. The answer depends on poses, options and state only. Half-spaces come as B.
+/// One contact. Returns whether there is a record of what touches. The answer depends on poses, options and state only. Half-spaces come as B.
 /// With the default solver and PLS_FACES_POINT, `delta` is the penetration depth, or minus the distance, and the two points of the surfaces are
 /// point +- delta/2 normal (+: of A). Pairs further apart than PLS_NARROW_FAR may get any bound of their distance beyond that.
 /// `record` may be null; where the energy takes longer than all else, and the force does not need it, it is left out unless it is.
-void pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state,
+bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state,
                            pls_overlap_record *record, pls_touch *out, pls_narrow_counts *counts);
+
+/// The same answer from the record alone, but for the depth, which is not asked for. False: the record does not tell, ask `pls_narrow_phase_from`.
+bool pls_narrow_phase_again(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_overlap_record *record,
+                            pls_touch *out, pls_narrow_counts *counts);
 
 static inline void pls_narrow_phase(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state,
                                     pls_touch *out, pls_narrow_counts *counts)

@@ -103,5 +103,6 @@ void pls_overlap_none(const pls_depth *depth, pls_touch *out)
                        .middle = point,
                        .weight = 0.0,
                        .energy_delta = 0.0,
-                       .depth = depth->delta};
+                       .depth = depth->delta,
+                       .reach = depth->delta};
 }

@@ -355,26 +355,25 @@ static int place_of_face(const pls_overlap_record *r, int body, int face)
     return body * PLS_RECORD_PLANES + k;
 }
 
-/// Corners by kind, and triangles by where they are then.
+/// Corners in order of their names, which is that of kinds, and triangles by where they are then.
 static void write_corners(finding *w)
 {
     pls_overlap_record *r = w->record;
     uint8_t place[PLS_RECORD_CORNERS];
-    int next = 0;
-    for (int kind = 0; kind < PLS_CORNER_KINDS; ++kind)
-        for (int k = 0; k < w->corners; ++k)
+    for (int k = 0; k < w->corners; ++k)
+    {
+        int rank = 0;
+        for (int j = 0; j < w->corners; ++j) rank += w->name[j] < w->name[k];
+        const int kind = (int)(w->name[k] >> 40), body = (int)(w->name[k] >> 32 & 1), vertices = vertices_of(kind);
+        for (int v = 0; v < vertices + planes_of(kind); ++v)
         {
-            if ((int)(w->name[k] >> 40) != kind) continue;
-            const int body = (int)(w->name[k] >> 32 & 1), vertices = vertices_of(kind);
-            for (int v = 0; v < vertices + planes_of(kind); ++v)
-            {
-                const int id = (int)(w->name[k] >> (24 - 8 * v) & 255);
-                const int of = kind == PLS_CORNER_MEET && v == 0 ? body : 1 - body;
-                r->corner[next][v] = (uint8_t)(v < vertices ? row_of_vertex(r, body, id) : place_of_face(r, of, id));
-            }
-            place[k] = (uint8_t)next++;
-            ++r->corners[kind];
+            const int id = (int)(w->name[k] >> (24 - 8 * v) & 255);
+            const int of = kind == PLS_CORNER_MEET && v == 0 ? body : 1 - body;
+            r->corner[rank][v] = (uint8_t)(v < vertices ? row_of_vertex(r, body, id) : place_of_face(r, of, id));
         }
+        place[k] = (uint8_t)rank;
+        ++r->corners[kind];
+    }
     for (int body = 0; body < 2; ++body)
     {
         uint8_t(*triangle)[4] = r->triangle + pls_record_first_triangle(r, body);
@@ -436,6 +435,35 @@ static bool write_vertices(finding *w, int body)
             if (row_of_vertex(w->record, body, (int)(w->name[k] >> (24 - 8 * v) & 255)) < 0) return false;
     }
     return (w->bodies->wall && body == 0) || write_apex(w, body); // under the faces of what lies on a wall no depth counts
+}
+
+/// Plane by place, of A or of B, a wall's where it is.
+static pls_half_space plane_at(const pls_record_bodies *c, const pls_overlap_record *r, int place)
+{
+    const int body = place >= PLS_RECORD_PLANES;
+    if (body == 1 && c->wall) return (pls_half_space){c->front, pls_dot(c->front, c->start[1])};
+    return pls_record_plane(c, body, r->plane[body][place - body * PLS_RECORD_PLANES]);
+}
+
+static pls_vec3 vertex_at(const pls_record_bodies *c, const pls_overlap_record *r, int row)
+{
+    return pls_record_vertex(c, row >= r->vertices[0], r->vertex[row]);
+}
+
+/// The first corner: a vertex or where an edge goes through a plane, as no two bodies overlap without.
+pls_vec3 pls_record_origin(const pls_record_bodies *c, const pls_overlap_record *r)
+{
+    const uint8_t *of = r->corner[0];
+    pls_vec3 x = vertex_at(c, r, of[0]);
+    if (r->corners[PLS_CORNER_VERTEX] == 0)
+    {
+        const pls_half_space plane = plane_at(c, r, of[2]);
+        const pls_vec3 along = pls_sub(vertex_at(c, r, of[1]), x);
+        x = pls_add(x, pls_scale(along, depth_under(&plane, x) / pls_dot(plane.normal, along)));
+    }
+    if (!c->wall) return x;
+    const pls_half_space front = plane_at(c, r, PLS_RECORD_PLANES);
+    return pls_add(x, pls_scale(c->front, depth_under(&front, x)));
 }
 
 bool pls_overlap_find(const pls_record_bodies *bodies, const uint64_t high[2], pls_overlap_record *out)

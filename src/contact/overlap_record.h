@@ -35,7 +35,8 @@ enum { PLS_APEX_ON_PLANE, PLS_APEX_VERTEX, PLS_APEX_ON_EDGE, PLS_NO_APEX };
 /// All zero: nothing. Planes and vertices are named by place: planes of A from 0 on, of B from PLS_RECORD_PLANES on.
 struct pls_overlap_record
 {
-    uint64_t high[2];                      ///< vertices of each body whose faces are in `plane`
+    uint64_t high[2]; ///< vertices of each body whose faces are in `plane`
+    pls_vec3 normal;  ///< of touch, from A to B, at the last step or some other: a direction along which little overlaps
     uint8_t known, planes[2], vertices[2]; ///< known: 1
     uint8_t corners[PLS_CORNER_KINDS];     ///< by kind, in this order
     uint8_t triangles[2];                  ///< of A's surface, then of B's
@@ -69,6 +70,10 @@ static inline bool pls_has_record(const pls_shape *s)
 
 /// Which, with the faces that have one of the vertices `high`, no others being near. False if there is none.
 bool pls_overlap_find(const pls_record_bodies *bodies, const uint64_t high[2], pls_overlap_record *out);
+
+/// A point of the overlap, for walls on their front: what integrals should be about. `bodies` are about any origin here, start[1] of a wall being a point of its front.
+/// Not always finite where the record does not fit.
+pls_vec3 pls_record_origin(const pls_record_bodies *bodies, const pls_overlap_record *record);
 
 /// The integrals, those by the depth's square if `squares`, energies without seams. False if the record does not fit.
 PLS_SIMD_DECLARE(bool, pls_overlap_recall, const pls_record_bodies *bodies, const pls_overlap_record *record, bool squares,

@@ -126,20 +126,35 @@ static bool behind(const pls_solid_list *list, const pls_solid_pair *pair)
     return !(pls_dot(n, pls_sub(centre_of(&list->posed[pair->row_i]), plane->position)) > 0.0);
 }
 
+/// Contacts of faces that go on are mostly what their record says, without any search. Depths are not known then: laws that act at surfaces need them.
+static bool spares_search(const pls_law *law, const pls_solid_pair *pair)
+{
+    return !law->lever_at_surface && law->narrow.faces != PLS_FACES_POINT && law->narrow.solver == PLS_SOLVER_DEPTH && !pair->lets_go;
+}
+
 static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t c, pls_narrow_counts *counts)
 {
     pls_solid_pair *pair = &list->pair[c];
     pls_solid_memory *memory = &list->memory[c];
-    const pls_narrow_options *options = &in->laws->law[pair->law].narrow;
+    pls_touch *touch = &list->touch[c];
+    const pls_law *law = &in->laws->law[pair->law];
+    const bool spares = spares_search(law, pair), goes_on = spares && memory->touches == PLS_SOLID_TOUCHES;
     parts p;
     pose_parts(list, in, c, &p);
     pair->ended = memory->touches == PLS_SOLID_TOUCHES; // until it is found to touch
+    pair->tracked = 1;
+    if (goes_on && pls_narrow_phase_again(p.a, p.b, &law->narrow, &list->record[c], touch, counts)) return;
     pair->tracked = bounds_overlap(p.a, p.b) && !(pair->lets_go && behind(list, pair));
-    list->touch[c].delta = 0.0;
-    if (pair->tracked)
-        pls_narrow_phase_from(p.a, p.b, options, &memory->state, &list->record[c], &list->touch[c], counts);
-    else
-        memset(&memory->state, 0, sizeof memory->state);
+    touch->delta = 0.0;
+    const pls_narrow_counts before = *counts;
+    bool recorded = false;
+    if (pair->tracked) recorded = pls_narrow_phase_from(p.a, p.b, &law->narrow, &memory->state, &list->record[c], touch, counts);
+    // As if the record had been at hand, wherever that comes from: restarts and lists made anew change nothing.
+    if (!pair->tracked || (recorded && spares)) memset(&memory->state, 0, sizeof memory->state);
+    if (!recorded || !goes_on) return;
+    *counts = before;
+    ++counts->queries;
+    touch->depth = INFINITY;
 }
 
 /// Is the contact of candidate c one that the deeper contact of d stands for?
@@ -498,6 +513,12 @@ void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *in, const
         }
     }
     answer(list, in, batch, taken, work);
+}
+
+double pls_solid_depth(const pls_solid_list *list, const pls_contact_input *in, size_t c)
+{
+    const double depth = list->touch[c].depth;
+    return isfinite(depth) ? depth : pls_solid_touch_now(list, in, c).depth;
 }
 
 pls_touch pls_solid_touch_now(const pls_solid_list *list, const pls_contact_input *in, size_t c)

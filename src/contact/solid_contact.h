@@ -13,6 +13,8 @@ void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *input, co
                         pls_narrow_counts *counts);
 /// Geometry alone, nothing remembered: the touch of a candidate now, from scratch; delta is negative or 0 where bounding volumes are apart.
 pls_touch pls_solid_touch_now(const pls_solid_list *list, const pls_contact_input *input, size_t candidate);
+/// The penetration depth of a candidate that touches [m].
+double pls_solid_depth(const pls_solid_list *list, const pls_contact_input *input, size_t candidate);
 /// Add forces and torques of contacts on bodies first .. last, in order of the partner's number, to four and four numbers per body: F and the power of dashpots, torque and
 /// the work of sliders.
 void pls_solid_gather(const pls_solid_list *list, size_t first, size_t last, double *force, double *torque);

@@ -11,6 +11,7 @@
 #include "contact/overlap_record.h"
 #include "contact/sphere_contact.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,14 +30,18 @@ void pls_solid_records_free(pls_solid_records *records)
 
 static int compare_u32(uint32_t a, uint32_t b) { return a < b ? -1 : a > b; }
 
+/// The numbers that a candidate is known by stand first, also where other things are kept by them.
+enum { KEY = 5 };
+_Static_assert(offsetof(pls_solid_memory, number_i) == 0 && offsetof(pls_solid_memory, image) == (KEY - 1) * sizeof(uint32_t),
+               "keys are the first numbers");
+
 static int by_key(const void *a, const void *b)
 {
-    const pls_solid_memory *p = a, *q = b;
-    int order = compare_u32(p->number_i, q->number_i);
-    if (order == 0) order = compare_u32(p->number_j, q->number_j);
-    if (order == 0) order = compare_u32(p->part_i, q->part_i);
-    if (order == 0) order = compare_u32(p->part_j, q->part_j);
-    return order ? order : compare_u32(p->image, q->image);
+    uint32_t p[KEY], q[KEY];
+    memcpy(p, a, sizeof p), memcpy(q, b, sizeof q);
+    int order = 0;
+    for (int k = 0; k < KEY && order == 0; ++k) order = compare_u32(p[k], q[k]);
+    return order;
 }
 
 void pls_solid_records_sort(pls_solid_records *records)
@@ -377,6 +382,51 @@ static void put_back(pls_solid_list *list, const pls_solid_records *records)
     }
 }
 
+// ---- overlaps put back ------------------------------------------------------------------------------------------------------------------------------------
+
+/// What is known of an overlap is dear to find (`pls_overlap_find`), and holds or is seen not to whatever list it stands in.
+typedef struct kept_overlap
+{
+    uint32_t key[KEY];
+    pls_overlap_record record;
+} kept_overlap;
+
+typedef struct kept_overlaps
+{
+    kept_overlap *entry; ///< in order of keys
+    size_t count;
+} kept_overlaps;
+
+/// Of the list that is about to be replaced, `count` candidates long.
+static pls_status take_overlaps(const pls_solid_list *list, size_t count, kept_overlaps *kept)
+{
+    size_t known = 0;
+    for (size_t c = 0; c < count; ++c) known += list->record[c].known;
+    if (known == 0) return PLS_OK;
+    PLS_TRY(pls_allocate(&kept->entry, known, sizeof *kept->entry, "overlaps of solids"));
+    for (size_t c = 0; c < count; ++c)
+    {
+        if (!list->record[c].known) continue;
+        kept_overlap *entry = &kept->entry[kept->count++];
+        memcpy(entry->key, &list->memory[c], sizeof entry->key);
+        entry->record = list->record[c];
+    }
+    qsort(kept->entry, kept->count, sizeof *kept->entry, by_key);
+    return PLS_OK;
+}
+
+static void put_back_overlaps(pls_solid_list *list, const kept_overlaps *kept)
+{
+    for (size_t c = 0; c < list->count; ++c)
+    {
+        const kept_overlap *entry = kept->count ? bsearch(&list->memory[c], kept->entry, kept->count, sizeof *kept->entry, by_key) : NULL;
+        if (entry)
+            list->record[c] = entry->record;
+        else
+            list->record[c].known = 0;
+    }
+}
+
 // ---- order ----------------------------------------------------------------------------------------------------------------------------------------------------
 
 /// Candidates as they were found, to be sorted.
@@ -488,7 +538,7 @@ static pls_status gather_rows(pls_solid_list *list, size_t rows)
 
 // ---- the whole --------------------------------------------------------------------------------------------------------------------------------------------
 
-static pls_status build(pls_solid_list *list, const pls_solid_source *s, const pls_solid_records *records)
+static pls_status build(pls_solid_list *list, const pls_solid_source *s, const pls_solid_records *records, const kept_overlaps *kept)
 {
     for (size_t k = 0; k < s->near->count; ++k)
         if (pls_pair_is_solid(s->bodies, s->near->pair[k].owner, s->near->pair[k].partner)) PLS_TRY(add_parts(list, s, &s->near->pair[k]));
@@ -496,24 +546,32 @@ static pls_status build(pls_solid_list *list, const pls_solid_source *s, const p
     PLS_TRY(find_kept(list, s, records));
     PLS_TRY(order_candidates(list));
     put_back(list, records);
+    put_back_overlaps(list, kept);
     PLS_TRY(cut_blocks(list));
     PLS_TRY(gather_rows(list, s->bodies->count));
     if (list->count > 0) memset(list->slot, 0, list->count * PLS_SOLID_SLOT * sizeof *list->slot);
     if (list->count > 0) memset(list->touch, 0, list->count * sizeof *list->touch);
-    for (size_t c = 0; c < list->count; ++c) list->record[c].known = 0;
     return PLS_OK;
 }
 
+static void empty(pls_solid_list *list) { list->count = list->block_count = list->row_count = 0; }
+
 pls_status pls_solid_list_build(pls_solid_list *list, const pls_solid_source *source, const pls_solid_records *records)
 {
-    list->count = list->block_count = list->row_count = 0;
+    const size_t before = list->count;
+    kept_overlaps kept = {0};
+    empty(list);
     bool any = false;
     for (size_t row = 0; row < source->bodies->count && !any; ++row) any = (source->bodies->kind[row].flags & PLS_BODY_SOLID) != 0;
     if (!any) return PLS_OK;
-    pls_status status = build(list, source, records);
-    if (status != PLS_OK) list->count = list->block_count = list->row_count = 0;
+    pls_status status = take_overlaps(list, before, &kept);
+    if (status == PLS_OK) status = build(list, source, records, &kept);
+    if (status != PLS_OK) empty(list);
+    pls_release(&kept.entry);
     return status;
 }
+
+void pls_solid_list_forget(pls_solid_list *list) { empty(list); }
 
 size_t pls_solid_list_bytes(const pls_solid_list *list)
 {

@@ -74,7 +74,7 @@ typedef struct pls_solid_list
     pls_solid_memory *memory;
     pls_touch *touch; ///< of the last step
     double *slot;
-    pls_overlap_record *record; ///< of the overlap at the last step, or nothing; forgotten when the list is made
+    pls_overlap_record *record; ///< of the overlap at some step, or nothing
     size_t count, capacity;
     pls_solid_block *block;
     size_t block_count, block_capacity;
@@ -113,11 +113,13 @@ static inline bool pls_pair_is_solid(const pls_bodies *bodies, uint32_t a, uint3
     return ((bodies->kind[a].flags | bodies->kind[b].flags) & PLS_BODY_SOLID) != 0;
 }
 
-/// Make the list: all pairs of parts nearer than the gap and all that touch in `records`, with what `records` holds of them.
+/// Make the list anew: all pairs of parts nearer than the gap and all that touch in `records`, with what `records` holds of them.
 /// NOT_FOUND names two materials without a law.
 pls_status pls_solid_list_build(pls_solid_list *list, const pls_solid_source *source, const pls_solid_records *records);
 /// INVALID_ARGUMENT: a wall of pieces is longer than a periodic edge, so that it and its images lie on each other. One that may turn is not asked.
 pls_status pls_solid_walls_fit(const pls_solid_list *list, const pls_domain *domain);
+/// No candidates, and nothing of what they knew: bodies of other shapes may have their numbers now.
+void pls_solid_list_forget(pls_solid_list *list);
 void pls_solid_list_free(pls_solid_list *list);
 size_t pls_solid_list_bytes(const pls_solid_list *list);
 /// Touching candidates now, shaded ones left out.

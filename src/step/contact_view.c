@@ -61,7 +61,10 @@ static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
     const pls_solid_list *list = &world->solids;
     const pls_solid_pair *pair = &list->pair[c];
     const pls_solid_memory *memory = &list->memory[c];
+    const pls_contact_input input = pls_contact_input_of(world, 0.0);
     const pls_touch *touch = &list->touch[c];
+    pls_touch whole = *touch; // with what nobody has asked for so far
+    if (!isfinite(touch->energy_delta) || !isfinite(touch->depth)) whole = pls_solid_touch_now(list, &input, c);
     const pls_bodies *b = &world->bodies;
     const pls_body_place *p = &b->place[pair->row_i], *q = &b->place[pair->row_j];
     const double *slot = list->slot + c * PLS_SOLID_SLOT, *edge = world->domain.edge;
@@ -78,8 +81,8 @@ static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
                              .normal = touch->normal,
                              .point = touch->point,
                              .force = pls_vec(slot[0], slot[1], slot[2]),
-                             .delta = touch->depth};
-    e->branch = e->wall ? pls_scale(touch->normal, pls_dot(touch->normal, pls_sub(touch->point, x)) - 0.5 * touch->depth) : d;
+                             .delta = whole.depth};
+    e->branch = e->wall ? pls_scale(touch->normal, pls_dot(touch->normal, pls_sub(touch->point, x)) - 0.5 * whole.depth) : d;
 
     const pls_law *law = &world->laws.law[pair->law];
     double mass_sum = b->load[pair->row_i].inv_mass + b->load[pair->row_j].inv_mass;
@@ -91,8 +94,7 @@ static void fill_solid(const pls_world *world, size_t c, pls_contact_entry *e)
                                .history = memory->history};
     law->ops->stiffness(law->constants, &point, &e->stiffness);
     e->stiffness.kn *= touch->weight; // of the approach; dashpots see that itself
-    const pls_contact_input input = pls_contact_input_of(world, 0.0);
-    point.delta = isfinite(touch->energy_delta) ? touch->energy_delta : pls_solid_touch_now(list, &input, c).energy_delta;
+    point.delta = isfinite(touch->energy_delta) ? touch->energy_delta : whole.energy_delta;
     law->ops->energy(law->constants, &point, &e->energy_normal, &e->energy_shear);
 }
 

@@ -135,8 +135,11 @@ pls_status pls_guard_overlap(pls_world *world)
     {
         const pls_solid_pair *pair = &world->solids.pair[c];
         if (world->solids.memory[c].touches == PLS_SOLID_APART) continue;
-        double radius = fmin(b->place[pair->row_i].radius, b->place[pair->row_j].radius), depth = world->solids.touch[c].depth;
-        if (depth > world->def.max_overlap * radius) return overlap_failure(world, pair->row_i, pair->row_j, depth, radius);
+        const double radius = fmin(b->place[pair->row_i].radius, b->place[pair->row_j].radius), limit = world->def.max_overlap * radius;
+        if (!(world->solids.touch[c].reach > limit)) continue;
+        const pls_contact_input input = pls_contact_input_of(world, 0.0);
+        const double depth = pls_solid_depth(&world->solids, &input, c);
+        if (depth > limit) return overlap_failure(world, pair->row_i, pair->row_j, depth, radius);
     }
     return PLS_OK;
 }

@@ -150,6 +150,7 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
     if (world->records.count > 0) memset(world->records.entry, 0, world->records.count * sizeof *world->records.entry);
     world->memory_holds = true;
     world->list.stale = true;
+    pls_solid_list_forget(&world->solids);
     world->special_stale = true;
     world->step = header->step;
     world->time = header->time;

@@ -24,7 +24,7 @@ static pls_touch touch_of(const pls_posed *a, const pls_posed *b, pls_faces face
     const pls_narrow_options options = solids_options(faces, area);
     const pls_depth depth = solids_depth(a, b, NULL);
     pls_touch t = {0};
-    assert_true(pls_faces_touch(a, b, &depth, &options, NULL, &t));
+    assert_true(solids_faces_touch(a, b, &depth, &options, NULL, &t));
     return t;
 }
 
@@ -191,7 +191,7 @@ static void caps_of_spheres_and_ellipsoids(void **state)
             const pls_depth depth = solids_depth(&p, &below, NULL);
             const pls_narrow_options manifold = solids_options(PLS_FACES_MANIFOLD, 1.0);
             pls_touch none;
-            assert_false(pls_faces_touch(&p, &below, &depth, &manifold, NULL, &none));
+            assert_false(solids_faces_touch(&p, &below, &depth, &manifold, NULL, &none));
             pls_shape_free(s), pls_shape_free(ground);
         }
 }
@@ -273,7 +273,7 @@ static void pairs_without_faces_are_left_alone(void **state)
             const pls_depth depth = solids_depth(&p, &q, NULL);
             const pls_narrow_options options = solids_options(faces, 1.0);
             pls_touch t;
-            assert_false(pls_faces_touch(&p, &q, &depth, &options, NULL, &t));
+            assert_false(solids_faces_touch(&p, &q, &depth, &options, NULL, &t));
         }
     for (int k = 0; k < 4; ++k) pls_shape_free(s[k]);
     pls_shape_free(b);

@@ -35,7 +35,7 @@ static pls_touch touch_of(pair *p)
     if (p->law == POINT || d.delta <= 0.0) return t;
     const pls_narrow_options options = solids_options(p->law == MANIFOLD ? PLS_FACES_MANIFOLD : PLS_FACES_VOLUME, p->A0);
     pls_touch faces;
-    assert_true(pls_faces_touch(&a, &b, &d, &options, NULL, &faces));
+    assert_true(solids_faces_touch(&a, &b, &d, &options, NULL, &faces));
     if (p->law == CENTROID)
         t.point = faces.point;
     else
@@ -239,7 +239,7 @@ static double largest_jump(const pls_shape *a, const pls_shape *b, int way, pls_
         const pls_posed q = on_the_way(b, way, (double)k / steps);
         const pls_depth depth = solids_depth(&p, &q, NULL);
         pls_touch t;
-        assert_true(pls_faces_touch(&p, &q, &depth, &options, NULL, &t));
+        assert_true(solids_faces_touch(&p, &q, &depth, &options, NULL, &t));
         const pls_vec3 f = pls_scale(t.normal, fmax(t.delta, 0.0)), g = pls_add(pls_cross(t.point, f), pls_scale(f, t.twist));
         most = fmax(most, pls_length(f));
         if (k > 0) jump = fmax(jump, pls_length(pls_sub(f, last_force)) + pls_length(pls_sub(g, last_torque)));

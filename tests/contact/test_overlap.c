@@ -158,7 +158,7 @@ static double difference(const pls_posed *a, const pls_posed *b, pls_faces faces
     const pls_vec3 origin = pls_scale(pls_add(d.on_a, d.on_b), 0.5);
     pls_touch t;
     answer o;
-    assert_true(pls_faces_touch(a, b, &d, &options, NULL, &t));
+    assert_true(solids_faces_touch(a, b, &d, &options, NULL, &t));
     if (!ask_oracle(a, b, origin, faces, &o) || !(o.volume > 0.0)) return t.delta > 0.0 ? NAN : 0.0;
     if (!(t.delta > 0.0)) return NAN;
     const pls_vec3 force = pls_scale(t.normal, t.delta);
@@ -330,7 +330,7 @@ static void shallow_and_flush_overlaps_stay_finite(void **state)
             const pls_narrow_options options = solids_options(faces, 1.0);
             pls_touch touch, again;
             memset(&touch, 0, sizeof touch), memset(&again, 0, sizeof again);
-            assert_true(pls_faces_touch(&a, &b, &d, &options, NULL, &touch) && pls_faces_touch(&a, &b, &d, &options, NULL, &again));
+            assert_true(solids_faces_touch(&a, &b, &d, &options, NULL, &touch) && solids_faces_touch(&a, &b, &d, &options, NULL, &again));
             assert_memory_equal(&touch, &again, sizeof touch);
             const double all = touch.delta + touch.energy_delta + touch.weight + touch.twist + pls_length(touch.point) +
                                pls_length(touch.middle) + pls_length(touch.normal) + touch.lever + touch.spread[0] + touch.spread[1];

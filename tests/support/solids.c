@@ -2,6 +2,7 @@
 
 #include "support/solids.h"
 
+#include "contact/faces.h"
 #include "shape/builtin.h"
 #include "support/numbers.h"
 
@@ -109,6 +110,13 @@ pls_touch solids_touch(const pls_posed *a, const pls_posed *b, pls_faces faces, 
     pls_touch t = {0};
     pls_narrow_phase(a, b, &options, &state, &t, &counts);
     return t;
+}
+
+bool solids_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
+                        pls_overlap_record *record, pls_touch *out)
+{
+    bool recorded;
+    return pls_faces_touch(a, b, depth, options, record, &recorded, out);
 }
 
 pls_depth solids_depth(const pls_posed *a, const pls_posed *b, pls_pair_state *state)
