@@ -183,7 +183,9 @@ static pls_status step_to_end(pls_run *run)
         if (is_interrupted(run)) return stop_interrupted(run);
         double start = pls_clock();
         uint64_t steps = steps_until_look(run, step_wall);
-        PLS_TRY(pls_world_run(run->world, steps));
+        const pls_status stepped = pls_world_run(run->world, steps);
+        run->broken = stepped != PLS_OK;
+        PLS_TRY(stepped);
         step_wall = (pls_clock() - start) / (double)steps;
         PLS_TRY(pls_recorder_look(&run->recorder, run->world));
         PLS_TRY(save_if_due(run));

@@ -18,6 +18,7 @@ typedef struct pls_run
     double end;                                 ///< [s]
     uint64_t scheduled[2];                      ///< steps of the newest scheduled checkpoint and of the one before, PLS_NO_STEP: none
     uint64_t saved_step;                        ///< of the newest checkpoint
+    bool broken;                                ///< a step failed within, so that nothing that is known of the world belongs to one moment
     uint64_t first_step;                        ///< where this process began
     double wall_start, wall_report, wall_saved; ///< pls_clock() at the first step, the last report and the last checkpoint [s]
 } pls_run;

@@ -86,10 +86,10 @@ static pls_status add_search(pls_text *json, const pls_run *run)
                           c.queries, c.iterations, c.restarts, c.fallbacks, c.failures);
 }
 
-/// After a failed run, or before the first step since a checkpoint, some values may not be to be had; else that is a failure.
+/// After a step that failed, or before the first step since a checkpoint, some values may not be to be had; else that is a failure.
 static pls_status is_known(const pls_run *run, pls_status outcome, pls_status status, bool *known)
 {
-    *known = status == PLS_OK;
+    *known = status == PLS_OK && !run->broken;
     bool stepped = pls_world_step_number(run->world) > run->first_step || run->first_step == 0;
     return outcome == PLS_OK && stepped ? status : PLS_OK;
 }

@@ -48,6 +48,7 @@ YAML
 sed 's/dt: 1.0e-4/dt: 1.0/' small.yaml >unstable.yaml
 sed 's/density/densty/' small.yaml >misspelt.yaml
 : >empty.yaml
+sed -e 's/kn: 10000, ks: 5000/kn: 100, ks: 50/' -e 's/velocity: \[1,/velocity: [10,/' small.yaml >clash.yaml
 
 # The program and its verbs.
 expect 2 "usage: particls VERB"
@@ -153,7 +154,7 @@ expect 2 "is no run directory" info "$0"
 # schema and plugin
 expect 0 '"$schema"' schema
 expect 0 "hex_pack" schema --reference
-expect 0 "`angular_velocity`" schema --fields
+expect 0 '`angular_velocity`' schema --fields
 expect 2 "exclude each other" schema --fields --reference
 expect 0 "-ffp-contract=off" plugin --cflags
 
@@ -164,6 +165,12 @@ if [ -w /dev/full ]; then
         failures=$((failures + 1))
     fi
 fi
+
+# A step that fails leaves no numbers that belong to no moment.
+expect 1 "overlap" run clash.yaml -o clash.run
+for value in '"finished": false' '"energies": null' '"momentum": null' '"state_hash": null'; do
+    grep -qF "$value" clash.run/summary.json || { echo "after a failed step $value is not in the summary" >&2; failures=$((failures + 1)); }
+done
 
 # What other programs read.
 if command -v python3 >/dev/null; then
