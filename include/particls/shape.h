@@ -47,6 +47,7 @@ typedef struct pls_shape_part
 
 /// A tree of boxes about the parts of a shape, by which those near a point are found.
 typedef struct pls_part_tree pls_part_tree;
+typedef struct pls_surface_sample pls_surface_sample;
 
 typedef struct pls_shape_input
 {
@@ -128,6 +129,7 @@ struct pls_shape
     const pls_shape_part *part;   ///< what it is the union of, in an order in which neighbours lie together; null: itself
     size_t part_count;            ///< 0: the shape itself is its one part
     pls_part_tree *tree;          ///< over the parts; null without
+    pls_surface_sample *sample;   ///< pieces of its surface, where contact goes by them; else null
 };
 
 /// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.

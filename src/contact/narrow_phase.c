@@ -26,6 +26,7 @@
 #include "contact/feature_depth.h"
 #include "contact/lines.h"
 #include "contact/polytope_depth.h"
+#include "contact/sampled_touch.h"
 #include "contact/sdf_depth.h"
 
 #include <string.h>
@@ -547,6 +548,11 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     const query q = {a, b, state->value, counts}, cold = {a, b, none.value, counts};
     pls_depth d;
     ++counts->queries;
+    if (options->faces != PLS_FACES_POINT && pls_is_sampled_pair(a->shape, b->shape))
+    {
+        pls_sampled_touch(a, b, options, out);
+        return false;
+    }
     if (!admm || !by_admm(&q, options->tolerance, &d)) d = table[kind_of(a->shape)][kind_of(b->shape)](admm ? &cold : &q);
     as_touch(&d, out);
     // Where the pair has neither faces nor lines to speak of the point stands.

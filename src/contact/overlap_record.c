@@ -458,8 +458,9 @@ pls_vec3 pls_record_origin(const pls_record_bodies *c, const pls_overlap_record 
     if (r->corners[PLS_CORNER_VERTEX] == 0)
     {
         const pls_half_space plane = plane_at(c, r, of[2]);
-        const pls_vec3 along = pls_sub(vertex_at(c, r, of[1]), x);
-        x = pls_add(x, pls_scale(along, depth_under(&plane, x) / pls_dot(plane.normal, along)));
+        const pls_vec3 end = vertex_at(c, r, of[1]);
+        const double p = depth_under(&plane, x), q = depth_under(&plane, end);
+        x = pls_add(x, pls_scale(pls_sub(end, x), (p < 0.0) != (q < 0.0) ? p / (p - q) : NAN)); // no corner: no origin
     }
     if (!c->wall) return x;
     const pls_half_space front = plane_at(c, r, PLS_RECORD_PLANES);

@@ -72,7 +72,7 @@ static inline bool pls_has_record(const pls_shape *s)
 bool pls_overlap_find(const pls_record_bodies *bodies, const uint64_t high[2], pls_overlap_record *out);
 
 /// A point of the overlap, for walls on their front: what integrals should be about. `bodies` are about any origin here, start[1] of a wall being a point of its front.
-/// Not always finite where the record does not fit.
+/// NaN where the record cannot fit.
 pls_vec3 pls_record_origin(const pls_record_bodies *bodies, const pls_overlap_record *record);
 
 /// The integrals, those by the depth's square if `squares`, energies without seams. False if the record does not fit.

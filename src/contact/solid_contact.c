@@ -143,7 +143,11 @@ static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t
     pose_parts(list, in, c, &p);
     pair->ended = memory->touches == PLS_SOLID_TOUCHES; // until it is found to touch
     pair->tracked = 1;
-    if (goes_on && pls_narrow_phase_again(p.a, p.b, &law->narrow, &list->record[c], touch, counts)) return;
+    if (goes_on && pls_narrow_phase_again(p.a, p.b, &law->narrow, &list->record[c], touch, counts))
+    {
+        memset(&memory->state, 0, sizeof memory->state); // as below; the last step may have done without a record
+        return;
+    }
     pair->tracked = bounds_overlap(p.a, p.b) && !(pair->lets_go && behind(list, pair));
     touch->delta = 0.0;
     const pls_narrow_counts before = *counts;
@@ -238,6 +242,14 @@ static pls_vec3 turn_about(pls_vec3 s, pls_vec3 n, double sine, double cosine)
 
 static pls_vec3 tangential(pls_vec3 u, pls_vec3 n) { return pls_sub(u, pls_scale(n, pls_dot(u, n))); }
 
+/// Where pushes from several sides nearly cancel, what is left acts at a long arm, far outside of the bodies; a dashpot there would turn them at once. It has the strength of one
+/// at the rim. `arm`: squared [m^2].
+static double damped_share(double arm, const pls_posed *i, const pls_posed *j)
+{
+    const double size = isfinite(j->size) && j->size < i->size ? j->size : i->size, most = size * size;
+    return arm > most ? most / arm : 1.0;
+}
+
 /// Contact `k` of the batch: what the law reads. `fresh`: it did not touch at the last step.
 static void frame_contact(const pls_solid_list *list, const pls_contact_input *in, size_t c, bool fresh, pls_contact_work *work, size_t k)
 {
@@ -252,7 +264,12 @@ static void frame_contact(const pls_solid_list *list, const pls_contact_input *i
     const pls_vec3 end_turn = pls_sub(m.end_w_i, m.end_w_j);
     // The normal force acts as a force on a line and a couple `twist` about it; the rate at which both do work is that of the force at this approach.
     double vn = pls_dot(v, n);
-    if (!pls_touch_is_point(t)) vn += pls_dot(pls_cross(end_turn, pls_sub(t->point, t->middle)), n) + t->twist * pls_dot(end_turn, n);
+    if (!pls_touch_is_point(t))
+    {
+        const pls_vec3 off = pls_sub(t->point, t->middle);
+        vn += pls_dot(pls_cross(end_turn, off), n) + t->twist * pls_dot(end_turn, n);
+        vn *= damped_share(pls_dot(off, off) + t->twist * t->twist, &list->posed[pair->row_i], &list->posed[pair->row_j]);
+    }
 
     const double lever = t->lever;
     double old_lever = lever, turning = 0.0; // turning: the spring along the normal

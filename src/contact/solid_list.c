@@ -9,7 +9,9 @@
 #include "base/sort.h"
 #include "contact/contact_memory.h"
 #include "contact/overlap_record.h"
+#include "contact/sampled_touch.h"
 #include "contact/sphere_contact.h"
+#include "shape/surface_sample.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -116,12 +118,23 @@ static bool lets_go(const pls_shape *shape)
     return place >= 0 && shape->values[place] > 0.5;
 }
 
+static const pls_shape *shape_of_part(const pls_shape *shape, uint32_t part) { return shape->part_count ? shape->part[part].shape : shape; }
+
+/// Contacts that go by pieces of surfaces need those of both.
+static pls_status sample_parts(const pls_shape *a, const pls_shape *b)
+{
+    if (!pls_is_sampled_pair(a, b)) return PLS_OK;
+    PLS_TRY(pls_shape_need_sample(a));
+    return pls_shape_need_sample(b);
+}
+
 static pls_status add_candidate(pls_solid_list *list, const pls_solid_source *s, const pls_near_pair *pair, uint32_t part_i,
                                 uint32_t part_j)
 {
     const pls_body_kind *i = &s->bodies->kind[pair->owner], *j = &s->bodies->kind[pair->partner];
     uint16_t law = pls_law_table_find(s->laws, i->material, j->material);
     if (law == PLS_NO_LAW) return missing_law(s, pair->owner, pair->partner);
+    PLS_TRY(sample_parts(shape_of_part(s->shape[i->shape], part_i), shape_of_part(s->shape[j->shape], part_j)));
     PLS_TRY(room_for(list, list->count + 1));
     size_t c = list->count++;
     list->pair[c] = (pls_solid_pair){.row_i = pair->owner, .row_j = pair->partner, .law = law, .lets_go = lets_go(s->shape[j->shape])};

@@ -11,6 +11,7 @@
 #include "math/principal_axes.h"
 #include "shape/mass_quadrature.h"
 #include "shape/part_tree.h"
+#include "shape/surface_sample.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -360,7 +361,12 @@ static pls_status measure(pls_shape *shape, const char *name)
     find_bounds(shape);
     PLS_TRY(try_sdf(shape, name));
     shape->inner_radius = inner_radius_of(shape);
-    if (!ops->wall) return measure_mass(shape, name);
+    if (!ops->wall)
+    {
+        PLS_TRY(measure_mass(shape, name));
+        const bool values_alone = shape->convex && !ops->support && !shape->polytope;
+        return shape->convex && !values_alone ? PLS_OK : pls_shape_need_sample(shape);
+    }
     shape->moments = pls_vec(0.0, 0.0, 0.0); // the frame of a wall is that in which it is given
     shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : pls_shape_reach(shape, shape->mass.centre);
     return PLS_OK;
@@ -461,6 +467,7 @@ void pls_shape_free(pls_shape *shape)
 {
     if (!shape || --shape->users > 0) return;
     release_parts(shape);
+    pls_surface_sample_free(shape->sample);
     if (shape->ops->release && shape->data) shape->ops->release(shape->data);
     pls_release(&shape);
 }

@@ -576,6 +576,7 @@ pls_status pls_world_remove_body(pls_world *world, pls_body_id id)
     uint32_t row = pls_body_row(world, id);
     if (row == PLS_NO_ROW) return pls_fail(PLS_STALE_ID, "the body to remove does not exist (any more)");
     PLS_TRY(pls_neighbours_detach(world));
+    pls_solid_list_forget(&world->solids); // its number may be that of another shape next
     uint32_t number = id.index1 - 1;
     size_t kept = 0;
     for (size_t k = 0; k < world->memory.count; ++k)

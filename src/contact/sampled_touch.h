@@ -1,0 +1,14 @@
+// sampled_touch.h -- contact of surfaces that are known by their pieces alone: shapes that are not convex, and flat places of shapes given by an SDF.
+#ifndef PLS_CONTACT_SAMPLED_TOUCH_H
+#define PLS_CONTACT_SAMPLED_TOUCH_H
+
+#include "contact/narrow_phase.h"
+
+/// Pairs whose contact is that of pieces, always the same pairs of shapes: of which one is not convex, or has flat places that only its SDF knows of while the other has some, too.
+/// Not balls, whose distance from anything is one SDF call.
+bool pls_is_sampled_pair(const pls_shape *a, const pls_shape *b);
+
+/// The contact of such a pair by options->faces (VOLUME or MANIFOLD). `delta` where nothing overlaps: minus a bound of the distance. Half-spaces and facets come as B.
+void pls_sampled_touch(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_touch *out);
+
+#endif

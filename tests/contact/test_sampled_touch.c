@@ -1,0 +1,157 @@
+// Contact by pieces of surfaces: forces are gradients of the energy, faces that lie on each other give what plane faces give, which pairs go by pieces.
+
+#include "contact/sampled_touch.h"
+#include "shape/builtin.h"
+#include "shape/surface_sample.h"
+#include "support/numbers.h"
+#include "support/solids.h"
+#include "support/values_alone.h"
+
+#include <particls/memory.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values, size_t count)
+{
+    return solids_make(ops, dimension, &(pls_shape_input){.values = values, .value_count = count});
+}
+#define MAKE(ops, dimension, ...) make(ops, dimension, NUMBERS(__VA_ARGS__))
+
+static pls_touch touch(const pls_posed *a, const pls_posed *b, pls_faces faces)
+{
+    assert_true(pls_is_sampled_pair(a->shape, b->shape));
+    assert_int_equal(pls_shape_need_sample(a->shape), PLS_OK);
+    assert_int_equal(pls_shape_need_sample(b->shape), PLS_OK);
+    return solids_touch(a, b, faces, 1.0);
+}
+
+static double energy(const pls_touch *t) { return t->delta > 0.0 ? 0.5 * t->energy_delta * t->energy_delta : 0.0; }
+
+/// Moved by `shift` and turned about its place by `turn`.
+static pls_posed moved(const pls_posed *p, pls_vec3 shift, pls_vec3 axis, double turn)
+{
+    const pls_quat q = solids_turn(axis, turn);
+    pls_posed m = *p;
+    m.position = pls_add(p->position, shift);
+    m.x = pls_rotate(q, p->x), m.y = pls_rotate(q, p->y), m.z = pls_rotate(q, p->z);
+    return m;
+}
+
+/// Force and torque on B about its place against differences of the energy. Pieces come into touch with no force at all, so that energies are smooth once.
+static void expect_gradient(const pls_posed *a, const pls_posed *b, pls_faces faces)
+{
+    const double h = 1e-6 * a->size;
+    const pls_touch t = touch(a, b, faces);
+    const pls_vec3 force = pls_scale(t.normal, t.delta);
+    const pls_vec3 torque = pls_add(pls_cross(pls_sub(t.point, b->position), force), pls_scale(force, t.twist));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const pls_vec3 e = pls_vec(axis == 0, axis == 1, axis == 2), still = pls_vec(0.0, 0.0, 0.0);
+        pls_posed low = moved(b, pls_scale(e, -h), e, 0.0), high = moved(b, pls_scale(e, h), e, 0.0);
+        pls_touch p = touch(a, &low, faces), q = touch(a, &high, faces);
+        assert_true(fabs((energy(&p) - energy(&q)) / (2.0 * h) - pls_dot(force, e)) < 2e-5 * t.delta);
+        low = moved(b, still, e, -h / a->size), high = moved(b, still, e, h / a->size);
+        p = touch(a, &low, faces), q = touch(a, &high, faces);
+        assert_true(fabs((energy(&p) - energy(&q)) / (2.0 * h / a->size) - pls_dot(torque, e)) < 2e-5 * t.delta * a->size);
+    }
+}
+
+static void forces_are_gradients_of_the_energy(void **state)
+{
+    (void)state;
+    solids_seed(71);
+    pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1), *box = solids_box(3, 0.2, 0.15, 0.1, 0.0),
+              *egg = MAKE(&pls_ellipsoid_shape, 3, 0.3, 0.2, 0.15, 0.0), *floor = solids_plane(3), *drum = MAKE(&values_drum, 3, 0.2, 0.2);
+    const pls_shape *partner[] = {ring, box, egg, drum, floor};
+    int asked = 0;
+    for (int round = 0; round < 600; ++round)
+    {
+        const pls_shape *other = partner[round % 5];
+        const pls_posed a = pls_pose(ring, pls_vec(0.1, 0.2, 0.3), solids_turn(solids_direction(3), solids_uniform(0, 6)), 1.0);
+        const double reach = other == floor ? 0.35 : 0.7 * (ring->radius + other->radius);
+        const pls_vec3 place = pls_add(pls_vec(0.1, 0.2, 0.3), pls_scale(solids_direction(3), solids_uniform(0.5, 1.0) * reach));
+        const pls_posed b = pls_pose(other, place, solids_turn(solids_direction(3), solids_uniform(0, 6)), 1.0);
+        const pls_touch t = touch(&a, &b, PLS_FACES_MANIFOLD);
+        if (!(t.depth > 0.002) || t.depth > 0.05) continue; // deeper than the middle of the tube the SDF has ridges
+        expect_gradient(&a, &b, round & 1 ? PLS_FACES_VOLUME : PLS_FACES_MANIFOLD);
+        ++asked;
+    }
+    print_message("%d touches\n", asked);
+    assert_true(asked > 40);
+    pls_shape_free(ring), pls_shape_free(box), pls_shape_free(egg), pls_shape_free(floor), pls_shape_free(drum);
+    assert_int_equal(pls_memory_in_use(), 0);
+}
+
+/// A box known by values on a half-space and on a box of plane faces, standing on a face: the depth, its area, its middle.
+static void a_face_on_a_face_is_as_deep_as_it_is(void **state)
+{
+    (void)state;
+    pls_shape *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *floor = solids_plane(3), *plate = solids_box(3, 2.0, 2.0, 0.5, 0.0);
+    for (int on = 0; on < 2; ++on)
+        for (double depth = 1e-4; depth < 0.02; depth *= 10.0)
+        {
+            const pls_posed ground = on == 0 ? pls_pose(floor, pls_vec(0, 0, 0), pls_quat_identity(), 1.0)
+                                             : pls_pose(plate, pls_vec(0, 0, -0.5), pls_quat_identity(), 1.0);
+            const pls_posed a = pls_pose(box, pls_vec(0.1, 0.2, 0.3 - depth), box->principal, 1.0);
+            const pls_touch t = touch(&a, &ground, PLS_FACES_MANIFOLD), v = touch(&a, &ground, PLS_FACES_VOLUME);
+            const double width = sqrt(3.76 / (double)box->sample->count);
+            // Sides dip by the depth, and count a little.
+            assert_true(fabs(t.delta / depth - 1.0) < 3.0 * depth + 1e-6);
+            assert_true(t.normal.z < -1.0 + 1e-4 && fabs(t.depth - depth) < 1e-9);
+            assert_true(hypot(t.point.x - 0.1, t.point.y - 0.2) < width);
+            // Along the rim of the face cells of the lattice are cut across.
+            assert_true(fabs(v.delta / (0.8 * depth) - 1.0) < 0.05);
+            assert_true(fabs(t.spread[0] / (0.25 / 3.0) - 1.0) < 3.0 * width && fabs(t.spread[1] / (0.16 / 3.0) - 1.0) < 3.0 * width);
+        }
+    pls_shape_free(box), pls_shape_free(floor), pls_shape_free(plate);
+}
+
+/// A ring that lies on the floor touches along its crest: as deep as it is, pushed in its middle, with the moments of a circle.
+static void a_ring_lies_on_its_crest(void **state)
+{
+    (void)state;
+    pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1), *floor = solids_plane(3);
+    const pls_posed ground = pls_pose(floor, pls_vec(0, 0, 0), pls_quat_identity(), 1.0);
+    for (double depth = 2e-3; depth < 0.02; depth *= 2.0)
+    {
+        const pls_posed a = pls_pose(ring, pls_vec(0.1, 0.2, 0.1 - depth), pls_quat_identity(), 1.0);
+        const pls_touch t = touch(&a, &ground, PLS_FACES_MANIFOLD);
+        // Of a parabola across the line: integral of t^3 by that of t^2 is 6/7, and so is the slope of that by the depth.
+        print_message("depth %g: delta %.4f of it, off its middle by %.2g, spread %.4f\n", depth, t.delta / depth,
+                      hypot(t.point.x - 0.1, t.point.y - 0.2), t.spread[0] / 0.045);
+        assert_true(fabs(t.delta / (36.0 / 49.0 * depth) - 1.0) < 0.03 && fabs(t.energy_delta / (6.0 / 7.0 * depth) - 1.0) < 0.03);
+        assert_true(hypot(t.point.x - 0.1, t.point.y - 0.2) < 0.01 && fabs(t.spread[0] / 0.045 - 1.0) < 0.05);
+    }
+    pls_shape_free(ring), pls_shape_free(floor);
+}
+
+static void pairs_are_what_their_shapes_make_them(void **state)
+{
+    (void)state;
+    pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1), *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *round = MAKE(&values_ball, 3, 0.4),
+              *ball = MAKE(&pls_sphere_shape, 3, 0.4), *plain = solids_box(3, 0.2, 0.2, 0.2, 0.0), *floor = solids_plane(3),
+              *egg = MAKE(&pls_ellipsoid_shape, 3, 0.3, 0.2, 0.1, 0.0);
+    assert_true(pls_is_sampled_pair(ring, ring) && pls_is_sampled_pair(ring, floor) && pls_is_sampled_pair(plain, ring));
+    assert_false(pls_is_sampled_pair(ring, ball)); // one call of the SDF
+    assert_true(pls_is_sampled_pair(box, floor) && pls_is_sampled_pair(box, plain) && pls_is_sampled_pair(plain, box));
+    assert_false(pls_is_sampled_pair(box, egg) || pls_is_sampled_pair(round, floor) || pls_is_sampled_pair(round, box));
+    assert_false(pls_is_sampled_pair(plain, plain) || pls_is_sampled_pair(plain, floor) || pls_is_sampled_pair(egg, egg));
+    pls_shape_free(ring), pls_shape_free(box), pls_shape_free(round), pls_shape_free(ball), pls_shape_free(plain), pls_shape_free(floor),
+        pls_shape_free(egg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forces_are_gradients_of_the_energy),
+        cmocka_unit_test(a_face_on_a_face_is_as_deep_as_it_is),
+        cmocka_unit_test(a_ring_lies_on_its_crest),
+        cmocka_unit_test(pairs_are_what_their_shapes_make_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
