@@ -11,8 +11,9 @@
 //   smooth on smooth     Newton on the sphere of normals (smooth_depth.c); when it stalls, BFGS; then the expanding polytope
 //   SDFs alone           BFGS on one point between the surfaces, then alternating projections (sdf_depth.c), then the expanding polytope on support points that follow from
 //                        the SDF. What won last is tried first
-//   not convex           BFGS from the deepest of a grid of points in the overlap of the bounding boxes: a place where the two surfaces face each other,
-//                        so `delta` is right for that place; that no other place is deeper is only as certain as the grid is fine
+//   not convex           pieces of the surfaces (sampled_touch.c), and so are flat places that only an SDF knows of. For PLS_FACES_POINT BFGS from the deepest of a grid of points
+//                        in the overlap of the bounding boxes: a place where the two surfaces face each other, so `delta` is right for that place; that no other place is
+//                        deeper is only as certain as the grid is fine
 //
 // A warm start that fails is tried cold (`restarts`), a solver that does not converge gives over to the next (`fallbacks`), and when none converges the least F found
 // is taken, which never is less than the depth (`failures`).
