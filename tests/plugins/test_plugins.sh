@@ -314,4 +314,29 @@ grep -q "^t = 1 s" <<<"$fallen" || complain "drop of docs/extending.md prints $f
 ./observed scene.yaml out >observed.txt || complain "observed of docs/extending.md fails"
 [ "$(wc -l <observed.txt)" -ge 4 ] || complain "observed of docs/extending.md saw nothing"
 
+# Rings fall on each other: no energy comes from nowhere, and threads change nothing.
+cat >rings.yaml <<'YAML'
+particls: 1
+plugins: [./torus.so]
+materials: {grain: {density: 2500}}
+shapes: {ring: {torus: {ring_radius: 0.03, tube_radius: 0.01}}, wall: {plane: {}}}
+bodies:
+  - {name: floor, shape: wall, material: grain, position: [0, 0, 0], normal: [0, 0, 1]}
+  - {name: low, shape: ring, material: grain, position: [0, 0, 0.02], orientation: {axis: [1, 0.3, 0], angle: 0.2}}
+  - {name: high, shape: ring, material: grain, position: [0.01, 0.005, 0.06], orientation: {axis: [1, 1, 0], angle: 0.7}}
+contact: [{between: all, law: viscoelastic, kn: 1.0e5, ks: 5.0e4, cn: 10, cs: 5, friction: 0.5}]
+forces: [{gravity: [0, 0, -9.81]}]
+time: {end: 0.3, dt: 2.0e-5}
+observe: [{collection: all, name: sums, quantities: [energy], every: 0.01}]
+YAML
+for threads in 1 2; do
+    "$PARTICLS" run rings.yaml -o "rings-$threads" --quiet --threads $threads || complain "rings on $threads threads failed"
+done
+[ "$(grep state_hash rings-1/summary.json)" = "$(grep state_hash rings-2/summary.json)" ] || complain "rings depend on threads"
+awk -F, 'NR == 1 { for (k = 1; k <= NF; ++k) if ($k ~ /^energy_total/) column = k }
+    NR == 2 { first = $column }
+    NR > 2 { error = $column / first - 1; if (error < 0) error = -error; if (error > worst) worst = error }
+    END { if (!(NR > 20 && column && worst < 1e-3)) { print "relative error of the energy of rings: " worst; exit 1 } }' rings-1/series/sums.csv >&2 ||
+    complain "rings win or lose energy"
+
 [ $failures -eq 0 ] || exit 1
