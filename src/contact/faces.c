@@ -31,19 +31,13 @@
 
 #include "contact/facet.h"
 #include "contact/overlap_laws.h"
-#include "contact/overlap_record.h"
+#include "contact/overlap_recall.h"
 #include "shape/builtin.h"
 
 #include <string.h>
 
 /// Of a body's size: of shallower overlaps rounding leaves no moments, and their force is nothing.
 static const double least_depth = 1e-11;
-
-/// Of a body's size: the conditions of a record hold by this at least, far above what rounding does to corners.
-static const double record_margin = 1e-9;
-
-/// Of the depth: faces are in a record from this much further down than need be, so that it lasts.
-static const double record_slack = 0.5;
 
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -54,62 +48,6 @@ static bool has_faces(const pls_shape *s)
 }
 
 static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
-
-static pls_half_space half_space(pls_vec3 normal, pls_vec3 through) { return (pls_half_space){normal, pls_dot(normal, through)}; }
-
-/// Keeps the faces in the order of their planes' distances from the origin.
-static void add_face(pls_near_body *out, const pls_near_face *face)
-{
-    int place = out->faces++;
-    for (; place > 0 && out->face[place - 1].plane.offset > face->plane.offset; --place) out->face[place] = out->face[place - 1];
-    out->face[place] = *face;
-}
-
-/// Faces above `lowest` along n, moved by the margin along n; the overlap is above `bottom`.
-static void take_faces(const pls_posed *p, pls_vec3 origin, pls_vec3 n, const double *height, double bottom, double lowest,
-                       pls_near_body *out)
-{
-    const pls_polytope *t = p->shape->polytope;
-    const pls_vec3 start = pls_add(pls_sub(p->position, origin), pls_scale(n, p->shape->margin * p->scale));
-    bool known[PLS_MOST_CORNERS];
-    memset(known, 0, t->vertex_count * sizeof *known);
-    uint8_t high[PLS_MOST_CORNERS];
-    for (uint32_t v = 0; v < t->vertex_count; ++v) high[v] = height[v] >= lowest;
-    out->faces = out->corners = 0;
-    for (uint32_t f = 0; f < t->face_count; ++f)
-    {
-        const uint32_t *corner = t->face_vertex + t->face_start[f];
-        const uint32_t corners = t->face_start[f + 1] - t->face_start[f];
-        unsigned near = 0;
-        for (uint32_t k = 0; k < corners; ++k) near |= high[corner[k]];
-        if (!near) continue;
-        double top = -INFINITY;
-        for (uint32_t k = 0; k < corners; ++k)
-        {
-            const uint32_t v = corner[k];
-            top = height[v] > top ? height[v] : top;
-            if (known[v]) continue;
-            known[v] = true;
-            out->used[out->corners++] = (uint16_t)v;
-            out->corner[v] = pls_add(start, pls_scale(pls_posed_turn(p, t->vertex[v]), p->scale));
-        }
-        const pls_near_face face = {.plane = half_space(pls_posed_turn(p, t->face_normal[f]), out->corner[corner[0]]),
-                                    .outline = corner,
-                                    .corners = (int)corners,
-                                    .enters = top >= bottom};
-        add_face(out, &face);
-    }
-    out->planes = out->faces;
-    out->reach = pls_length(pls_sub(centre_of(p), origin)) + p->size;
-}
-
-/// Heights of all vertices along n, margin included; the largest.
-static double take_heights(const pls_posed *p, pls_vec3 origin, pls_vec3 n, double *height)
-{
-    const pls_vec3 own = pls_scale(pls_posed_turn_back(p, n), p->scale);
-    const double start = pls_dot(pls_sub(p->position, origin), n) + p->shape->margin * p->scale;
-    return PLS_SIMD_SELECT(pls_overlap_heights)(p->shape->polytope, own, start, height);
-}
 
 /// The prism behind a facet, its front towards `centre`.
 static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, pls_near_body *out)
@@ -156,164 +94,9 @@ static bool is_ellipsoid(const pls_shape *s, double half[3])
 
 // ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
 
-/// The overlap as seen along the normal of touch: of A's and B's vertices the heights above the origin, towards the other body, and from where on faces matter.
-typedef struct slab
-{
-    pls_vec3 origin, n;
-    const double *height[2];
-    double lowest[2], deep, size;
-} slab;
-
-/// Vertices as high as `lowest`.
-static uint64_t high_vertices(const pls_posed *p, const double *height, double lowest)
-{
-    return PLS_SIMD_SELECT(pls_overlap_high)(height, p->shape->polytope->vertex_count, lowest);
-}
-
-/// What of the two bodies matters. B of walls is known already.
-static void take_both(const pls_posed *a, const pls_posed *b, const slab *s, pls_near_body *A, pls_near_body *B)
-{
-    // What reaches as deep as the other one's `lowest` lies in it at the most.
-    take_faces(a, s->origin, s->n, s->height[0], s->lowest[0] + s->deep, s->lowest[0], A);
-    if (s->height[1]) take_faces(b, s->origin, pls_scale(s->n, -1.0), s->height[1], s->lowest[1] + s->deep, s->lowest[1], B);
-}
-
-static bool outline_is_listed(const pls_polytope *t, uint64_t faces, const uint32_t *outline)
-{
-    for (; faces; faces &= faces - 1)
-        if (t->face_vertex + t->face_start[__builtin_ctzll(faces)] == outline) return true;
-    return false;
-}
-
-/// A record and where the two bodies are, about an origin that follows from these alone: no answer depends on how a record was come by.
-typedef struct posed_record
-{
-    const pls_posed *body[2];
-    const pls_overlap_record *record;
-    pls_record_bodies about;
-    pls_vec3 origin;
-    double size;
-} posed_record;
-
 static bool is_wall(const pls_posed *b) { return b->shape->ops->unbounded; }
 
-/// Bodies about A's position; of the margin of the bodies.
-static pls_record_bodies bodies_of(const pls_posed *a, const pls_posed *b, double size)
-{
-    pls_record_bodies c = {.body = {a, b}, .wall = is_wall(b), .margin = record_margin * size};
-    if (c.wall) c.front = pls_posed_gradient(b, b->position);
-    c.start[0] = pls_scale(c.front, -a->shape->margin * a->scale), c.start[1] = pls_sub(b->position, a->position);
-    return c;
-}
-
 static double size_of(const pls_posed *a, const pls_posed *b) { return is_wall(b) ? a->size : fmax(a->size, b->size); }
-
-static posed_record pose_record(const pls_posed *a, const pls_posed *b, const pls_overlap_record *record)
-{
-    posed_record p = {.body = {a, b}, .record = record, .size = size_of(a, b)};
-    p.about = bodies_of(a, b, p.size);
-    const pls_vec3 shift = pls_record_origin(&p.about, record);
-    for (int k = 0; k < 2; ++k) p.about.start[k] = pls_sub(p.about.start[k], shift);
-    p.origin = pls_add(a->position, shift);
-    return p;
-}
-
-/// The overlap along a direction from A to B, whichever: nothing of it lies under a face from which it is further than its extent. Heights are of room for both bodies.
-static slab slab_along(const posed_record *p, pls_vec3 n, double (*height)[PLS_MOST_CORNERS])
-{
-    double reach[2] = {0.0, 0.0};
-    for (int k = 0; k < (p->about.wall ? 1 : 2); ++k)
-    {
-        const pls_posed *body = p->body[k];
-        const pls_vec3 up = k == 0 ? n : pls_scale(n, -1.0);
-        reach[k] = PLS_SIMD_SELECT(pls_overlap_heights)(body->shape->polytope, pls_scale(pls_posed_turn_back(body, up), body->scale),
-                                                        pls_dot(p->about.start[k], up), height[k]);
-    }
-    const double deep = reach[0] + reach[1];
-    return (slab){.origin = p->origin,
-                  .n = n,
-                  .height = {height[0], p->about.wall ? NULL : height[1]},
-                  .lowest = {-reach[1] - deep, -reach[0] - deep},
-                  .deep = deep,
-                  .size = p->size};
-}
-
-/// The rest of energies where no point is common to all faces that depth counts from. Not `now`: when somebody looks, nobody does at each step.
-static void add_seams(const posed_record *p, bool now, pls_overlap_integrals *out)
-{
-    const pls_overlap_record *record = p->record;
-    if (record->apex[0].kind != PLS_NO_APEX && record->apex[1].kind != PLS_NO_APEX) return;
-    if (!now)
-    {
-        out->by_depth.energy = INFINITY;
-        return;
-    }
-    double height[2][PLS_MOST_CORNERS];
-    const double area = pls_length(out->area);
-    const slab s = slab_along(p, area > 0.0 ? pls_scale(out->area, 1.0 / area) : pls_vec(1.0, 0.0, 0.0), height);
-    pls_near_body near[2];
-    take_both(p->body[0], p->body[1], &s, &near[0], &near[1]);
-    for (int k = 0; k < 2; ++k)
-    {
-        if (record->apex[k].kind != PLS_NO_APEX) continue;
-        const pls_polytope *t = p->body[k]->shape->polytope;
-        int list[PLS_MOST_FACES], count = 0;
-        for (int f = 0; f < near[k].faces; ++f)
-            if (outline_is_listed(t, record->seen[k], near[k].face[f].outline)) list[count++] = f;
-        double seam[2];
-        PLS_SIMD_SELECT(pls_overlap_seams)(&near[k], list, count, &near[1 - k], 3, PLS_OVERLAP_BLUR * s.size, seam);
-        out->by_depth.energy += 0.5 * seam[0] / 2.0, out->by_its_square.energy += 0.5 * seam[1] / 3.0;
-    }
-}
-
-/// False if the record does not fit. That no faces matter but those it has in view is asked elsewhere.
-static bool recall(const posed_record *p, bool squares, bool energies, pls_overlap_integrals *out)
-{
-    if (!PLS_SIMD_SELECT(pls_overlap_recall)(&p->about, p->record, squares, out)) return false;
-    add_seams(p, squares || energies, out);
-    return true;
-}
-
-/// Vertices whose faces matter. A little more than can be nearest, so that no face without them comes near to being so: whoever keeps more faces sees the same.
-static bool has_in_view(const posed_record *p, const slab *s)
-{
-    for (int k = 0; k < (p->about.wall ? 1 : 2); ++k)
-        if (high_vertices(p->body[k], s->height[k], s->lowest[k] - 4.0 * p->about.margin) & ~p->record->high[k]) return false;
-    return true;
-}
-
-static bool can_have_record(const pls_posed *a, const pls_posed *b)
-{
-    return pls_has_record(a->shape) && (is_wall(b) || pls_has_record(b->shape));
-}
-
-/// The integrals by what an earlier step found of the faces, edges and corners about, or by what is found now. False if they do not tell.
-static bool by_record(const pls_posed *a, const pls_posed *b, const slab *s, bool squares, pls_overlap_record *record,
-                      pls_overlap_integrals *out, pls_vec3 *origin)
-{
-    if (!can_have_record(a, b)) return false;
-    if (record && record->known)
-    {
-        const posed_record p = pose_record(a, b, record);
-        *origin = p.origin;
-        if (has_in_view(&p, s) && recall(&p, squares, false, out)) return true;
-    }
-    const pls_posed *body[2] = {a, b};
-    pls_record_bodies c = bodies_of(a, b, s->size);
-    uint64_t some[2] = {0, 0};
-    for (int k = 0; k < (c.wall ? 1 : 2); ++k)
-    {
-        c.start[k] = pls_sub(c.start[k], pls_sub(s->origin, a->position));
-        some[k] = high_vertices(body[k], s->height[k], s->lowest[k] - record_slack * s->deep);
-    }
-    pls_overlap_record now;
-    if (!pls_overlap_find(&c, some, &now)) return false;
-    const posed_record p = pose_record(a, b, &now);
-    *origin = p.origin;
-    if (!recall(&p, squares, !record, out)) return false;
-    if (record) *record = now;
-    return true;
-}
 
 static bool finish(pls_overlap_integrals *P, pls_vec3 origin, double size, const pls_posed *a, const pls_narrow_options *options,
                    pls_touch *out)
@@ -323,53 +106,56 @@ static bool finish(pls_overlap_integrals *P, pls_vec3 origin, double size, const
     return true;
 }
 
+/// Where a body's frame starts from the origin, moved by the margin along n.
+static pls_vec3 start_of(const pls_posed *p, pls_vec3 origin, pls_vec3 n)
+{
+    return pls_add(pls_sub(p->position, origin), pls_scale(n, p->shape->margin * p->scale));
+}
+
+/// B as a half-space or the prism behind a facet, and the origin moved to its front, which has no share in moments about a point on it.
+static void take_wall(const pls_posed *a, const pls_posed *b, pls_vec3 *origin, pls_near_body *B)
+{
+    if (pls_is_facet(b->shape))
+        take_facet(b, *origin, centre_of(a), B);
+    else
+    {
+        B->face[0].plane = pls_half_space_through(pls_posed_gradient(b, b->position), pls_sub(b->position, *origin));
+        B->faces = B->planes = 1;
+        B->face[0].outline = NULL;
+    }
+    const pls_vec3 shift = pls_scale(B->face[0].plane.normal, B->face[0].plane.offset);
+    *origin = pls_add(*origin, shift);
+    for (int f = 1; f < B->planes; ++f) B->face[f].plane.offset -= pls_dot(B->face[f].plane.normal, shift);
+    B->face[0].plane.offset = 0.0;
+    B->reach = pls_length(pls_sub(centre_of(a), *origin)) + a->size;
+}
+
 static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                         pls_overlap_record *record, bool *recorded, pls_touch *out)
 {
-    const bool plane = is_wall(b), facet = pls_is_facet(b->shape);
-    pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
-    double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS];
-    pls_vec3 n = depth->normal;
+    const bool facet = pls_is_facet(b->shape), wall = is_wall(b) || facet;
+    pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5), n = depth->normal;
+    double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS], reach_b = 0.0;
     pls_near_body A, B;
-    double reach_b;
-    if (plane || facet)
+    if (wall)
     {
-        if (facet)
-            take_facet(b, origin, centre_of(a), &B);
-        else
-        {
-            B.face[0].plane = half_space(pls_posed_gradient(b, b->position), pls_sub(b->position, origin));
-            B.faces = B.planes = 1;
-            B.face[0].outline = NULL;
-        }
-        // To the front, which has no share in moments about a point on it.
-        const pls_vec3 shift = pls_scale(B.face[0].plane.normal, B.face[0].plane.offset);
-        origin = pls_add(origin, shift);
-        for (int f = 1; f < B.planes; ++f) B.face[f].plane.offset -= pls_dot(B.face[f].plane.normal, shift);
-        B.face[0].plane.offset = reach_b = 0.0;
-        B.reach = pls_length(pls_sub(centre_of(a), origin)) + a->size;
+        take_wall(a, b, &origin, &B);
         n = pls_scale(B.face[0].plane.normal, -1.0);
     }
     else
-        reach_b = take_heights(b, origin, pls_scale(n, -1.0), height_b);
-    const double reach_a = take_heights(a, origin, n, height_a), deep = reach_a + reach_b;
-    if (!(deep > least_depth * a->size)) return false;
-    const double size = size_of(a, b);
-    const slab between = {.origin = origin,
-                          .n = n,
-                          .height = {height_a, plane || facet ? NULL : height_b},
-                          .lowest = {-reach_b - deep, -reach_a - deep},
-                          .deep = deep,
-                          .size = size};
-    pls_overlap_integrals P;
-    pls_vec3 about;
-    if (!facet && by_record(a, b, &between, options->faces == PLS_FACES_MANIFOLD, record, &P, &about))
+        reach_b = pls_near_heights(b, start_of(b, origin, pls_scale(n, -1.0)), pls_scale(n, -1.0), height_b);
+    const double reach_a = pls_near_heights(a, start_of(a, origin, n), n, height_a), size = size_of(a, b);
+    const pls_slab between = pls_slab_of(origin, n, height_a, wall ? NULL : height_b, reach_a, reach_b, size);
+    if (!(between.deep > least_depth * a->size)) return false;
+    pls_recalled recalled;
+    if (!facet && pls_overlap_by_record(a, b, &between, options->faces == PLS_FACES_MANIFOLD, record, &recalled))
     {
-        *recorded = finish(&P, about, size, a, options, out);
+        *recorded = finish(&recalled.P, recalled.origin, size, a, options, out);
         if (record) record->normal = out->normal;
         return *recorded;
     }
-    take_both(a, b, &between, &A, &B);
+    pls_near_faces(a, b, &between, &A, &B);
+    pls_overlap_integrals P;
     PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, PLS_OVERLAP_BLUR * size, &P);
     return finish(&P, origin, size, a, options, out);
 }
@@ -399,14 +185,10 @@ bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
 bool pls_faces_touch_again(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_overlap_record *record,
                            pls_touch *out)
 {
-    if (!record->known) return false;
-    const posed_record p = pose_record(a, b, record);
-    double height[2][PLS_MOST_CORNERS];
-    const slab s = slab_along(&p, p.about.wall ? pls_scale(p.about.front, -1.0) : record->normal, height);
-    pls_overlap_integrals P;
-    if (!(s.deep > least_depth * a->size) || !has_in_view(&p, &s)) return false;
-    if (!recall(&p, options->faces == PLS_FACES_MANIFOLD, false, &P) || !finish(&P, p.origin, p.size, a, options, out)) return false;
+    pls_recalled r;
+    if (!pls_overlap_again(a, b, options->faces == PLS_FACES_MANIFOLD, record, &r) || !(r.deep > least_depth * a->size)) return false;
+    if (!finish(&r.P, r.origin, size_of(a, b), a, options, out)) return false;
     record->normal = out->normal;
-    out->depth = INFINITY, out->reach = s.deep;
+    out->depth = INFINITY, out->reach = r.deep;
     return true;
 }

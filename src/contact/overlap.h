@@ -12,6 +12,11 @@ typedef struct pls_half_space
     double offset; ///< [m]
 } pls_half_space;
 
+static inline pls_half_space pls_half_space_through(pls_vec3 normal, pls_vec3 point)
+{
+    return (pls_half_space){normal, pls_dot(normal, point)};
+}
+
 enum { PLS_MOST_CORNERS = 2 * PLS_MOST_FACES };
 
 typedef struct pls_near_face
