@@ -2,6 +2,7 @@
 
 #include "contact/touch_area.h"
 #include "shape/builtin.h"
+#include "support/near.h"
 #include "support/solids.h"
 
 #include <setjmp.h>
@@ -20,18 +21,6 @@ static pls_touch touch_by(const pls_posed *a, const pls_posed *b, pls_faces face
 static pls_posed at(const pls_shape *shape, pls_vec3 x, pls_quat q) { return pls_pose(shape, x, q, 1.0); }
 
 static pls_posed ground_of(const pls_shape *plane) { return at(plane, pls_vec(0, 0, 0), pls_quat_identity()); }
-
-static void assert_near(double value, double expected, double tolerance)
-{
-    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.15g is not %.15g within %g", value, expected, tolerance);
-}
-
-static void assert_vec_near(pls_vec3 value, pls_vec3 expected, double tolerance)
-{
-    if (!(pls_length(pls_sub(value, expected)) <= tolerance))
-        fail_msg("(%.12g, %.12g, %.12g) is not (%.12g, %.12g, %.12g) within %g", value.x, value.y, value.z, expected.x, expected.y,
-                 expected.z, tolerance);
-}
 
 static void assert_same(const pls_touch *t, const pls_touch *u, double depth, double tolerance)
 {
@@ -155,16 +144,6 @@ static void a_wide_face_is_a_half_space(void **state)
     pls_shape_free(can), pls_shape_free(slab), pls_shape_free(plane);
 }
 
-static void add_wrench(const pls_posed *p, const pls_posed *q, pls_vec3 *force, pls_vec3 *torque, double *energy)
-{
-    const pls_touch t = touch_by(p, q, PLS_FACES_VOLUME);
-    if (!(t.delta > 0.0)) return;
-    const pls_vec3 f = pls_scale(t.normal, t.delta);
-    *force = pls_add(*force, f);
-    *torque = pls_add(*torque, pls_add(pls_cross(t.point, f), pls_scale(f, t.twist)));
-    *energy += t.energy_delta * t.energy_delta;
-}
-
 /// A floor of pieces, wherever its seams are, also under a rounded cylinder.
 static void facets_of_a_floor_add_up_to_a_plane(void **state)
 {
@@ -189,14 +168,14 @@ static void facets_of_a_floor_add_up_to_a_plane(void **state)
         p.position.z = depth_below_origin(&p, &ground) - 0.02;
         pls_vec3 F = {0, 0, 0}, T = F, F0 = F, T0 = F;
         double U = 0.0, U0 = 0.0;
-        add_wrench(&p, &ground, &F0, &T0, &U0);
+        solids_add_wrench(&p, &ground, &F0, &T0, &U0);
         size_t count = 0;
         const pls_shape_part *part = floor->ops->parts(floor, &count);
         assert_int_equal(count, 4);
         for (size_t k = 0; k < count; ++k)
         {
             const pls_posed piece = at(part[k].shape, part[k].position, part[k].orientation);
-            add_wrench(&p, &piece, &F, &T, &U);
+            solids_add_wrench(&p, &piece, &F, &T, &U);
         }
         assert_true(pls_length(F0) > 1e-6);
         assert_vec_near(F, F0, 1e-11);

@@ -3,6 +3,7 @@
 #include "contact/faces.h"
 #include "contact/touch_area.h"
 #include "shape/builtin.h"
+#include "support/near.h"
 #include "support/solids.h"
 #include "support/numbers.h"
 
@@ -32,18 +33,6 @@ static pls_posed at(const pls_shape *shape, pls_vec3 x, pls_quat q) { return pls
 
 /// How deep the lowest point lies.
 static double depth_below(const pls_posed *p, const pls_posed *plane) { return solids_depth(p, plane, NULL).delta; }
-
-static void assert_near(double value, double expected, double tolerance)
-{
-    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.15g is not %.15g within %g", value, expected, tolerance);
-}
-
-static void assert_vec_near(pls_vec3 value, pls_vec3 expected, double tolerance)
-{
-    if (!(pls_length(pls_sub(value, expected)) <= tolerance))
-        fail_msg("(%.12g, %.12g, %.12g) is not (%.12g, %.12g, %.12g) within %g", value.x, value.y, value.z, expected.x, expected.y,
-                 expected.z, tolerance);
-}
 
 // ---- known overlaps -----------------------------------------------------------------------------------------------------------------------------------------
 
@@ -198,17 +187,6 @@ static void caps_of_spheres_and_ellipsoids(void **state)
 
 // ---- walls of facets ----------------------------------------------------------------------------------------------------------------------------------------
 
-/// Force and torque about the origin, all parts of B together; the law's stiffness and A0 are 1.
-static void add_wrench(const pls_posed *p, const pls_posed *q, pls_vec3 *force, pls_vec3 *torque, double *energy)
-{
-    const pls_touch t = touch_of(p, q, PLS_FACES_VOLUME, 1.0);
-    if (!(t.delta > 0.0)) return;
-    const pls_vec3 f = pls_scale(t.normal, t.delta);
-    *force = pls_add(*force, f);
-    *torque = pls_add(*torque, pls_add(pls_cross(t.point, f), pls_scale(f, t.twist)));
-    *energy += t.energy_delta * t.energy_delta;
-}
-
 /// A floor of pieces, wherever its seams are, also with a rounding, which lifts it.
 static void facets_of_a_floor_add_up_to_a_plane(void **state)
 {
@@ -236,14 +214,14 @@ static void facets_of_a_floor_add_up_to_a_plane(void **state)
                                                         : pls_vec(solids_uniform(-0.2, 0.2), 0.0, height - 0.05));
         pls_vec3 F = {0, 0, 0}, T = F, F0 = F, T0 = F;
         double U = 0.0, U0 = 0.0;
-        add_wrench(&p, &below, &F0, &T0, &U0);
+        solids_add_wrench(&p, &below, &F0, &T0, &U0);
         size_t count = 0;
         const pls_shape_part *part = floor->ops->parts(floor, &count);
         assert_int_equal(count, dimension == 2 ? 2 : 4);
         for (size_t k = 0; k < count; ++k)
         {
             const pls_posed piece = at(part[k].shape, part[k].position, part[k].orientation);
-            add_wrench(&p, &piece, &F, &T, &U);
+            solids_add_wrench(&p, &piece, &F, &T, &U);
         }
         assert_near(pls_length(F0), pls_length(F), 1e-15);
         assert_true(pls_length(F0) > 1e-4);

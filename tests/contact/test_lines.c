@@ -2,6 +2,7 @@
 
 #include "contact/lines.h"
 #include "shape/builtin.h"
+#include "support/near.h"
 #include "support/solids.h"
 
 #include <setjmp.h>
@@ -26,18 +27,6 @@ static pls_shape *capsule(int dimension, double radius, double length)
 }
 
 static pls_posed ground_of(const pls_shape *plane) { return at(plane, pls_vec(0, 0, 0), pls_quat_identity()); }
-
-static void assert_near(double value, double expected, double tolerance)
-{
-    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.15g is not %.15g within %g", value, expected, tolerance);
-}
-
-static void assert_vec_near(pls_vec3 value, pls_vec3 expected, double tolerance)
-{
-    if (!(pls_length(pls_sub(value, expected)) <= tolerance))
-        fail_msg("(%.12g, %.12g, %.12g) is not (%.12g, %.12g, %.12g) within %g", value.x, value.y, value.z, expected.x, expected.y,
-                 expected.z, tolerance);
-}
 
 // ---- the gradient -------------------------------------------------------------------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 #include "render/render.h"
 
 #include "shape/builtin.h"
+#include "support/near.h"
 #include "support/numbers.h"
 
 #include <math.h>
@@ -88,11 +89,6 @@ static outline outline_of(const pls_render_item *items, size_t count, pls_render
 }
 
 static const uint8_t *pixel(const pls_render_picture *picture, int x, int y) { return &picture->rgba[4 * (y * picture->width + x)]; }
-
-static void assert_near(double value, double known, double tolerance)
-{
-    if (!(fabs(value - known) <= tolerance)) fail_msg("%g is not within %g of %g", value, tolerance, known);
-}
 
 /// In parallel a disc; from an eye at distance d an ellipse, whose tangents follow from the cone around the ball.
 static void outlines(void **state)

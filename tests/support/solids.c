@@ -119,6 +119,16 @@ bool solids_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth 
     return pls_faces_touch(a, b, depth, options, record, &recorded, out);
 }
 
+void solids_add_wrench(const pls_posed *a, const pls_posed *b, pls_vec3 *force, pls_vec3 *torque, double *energy)
+{
+    const pls_touch t = solids_touch(a, b, PLS_FACES_VOLUME, 1.0);
+    if (!(t.delta > 0.0)) return;
+    const pls_vec3 f = pls_scale(t.normal, t.delta);
+    *force = pls_add(*force, f);
+    *torque = pls_add(*torque, pls_add(pls_cross(t.point, f), pls_scale(f, t.twist)));
+    *energy += t.energy_delta * t.energy_delta;
+}
+
 pls_depth solids_depth(const pls_posed *a, const pls_posed *b, pls_pair_state *state)
 {
     const pls_narrow_options options = solids_options(PLS_FACES_POINT, 0.0);

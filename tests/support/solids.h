@@ -28,6 +28,8 @@ pls_touch solids_touch(const pls_posed *a, const pls_posed *b, pls_faces faces, 
 /// `pls_faces_touch` for those who do not ask whether there is a record.
 bool solids_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                         pls_overlap_record *record, pls_touch *out);
+/// Of a touch of two shapes by the volume law of area 1: add force and torque about the world's origin on B, and twice the energy.
+void solids_add_wrench(const pls_posed *a, const pls_posed *b, pls_vec3 *force, pls_vec3 *torque, double *energy);
 /// Penetration depth; `state` may be null.
 pls_depth solids_depth(const pls_posed *a, const pls_posed *b, pls_pair_state *state);
 
