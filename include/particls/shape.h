@@ -131,7 +131,8 @@ struct pls_shape
 };
 
 /// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.
-/// INVALID_ARGUMENT tells where an SDF lies: not finite, not negative at the centre of mass (convex shapes), steeper than 1, or positive all over.
+/// INVALID_ARGUMENT tells where an SDF lies, with the point and the value: not finite, steeper than 1 or less steep, with jumps, of the wrong sign, nowhere negative, or
+/// not convex though the shape is said to be. `name` begins or is in all messages but those of memory.
 pls_status pls_shape_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input, const char *name,
                           pls_shape **out); // `name` starts messages: "shape 'stone'"
 /// One more keeper of the shape, who frees it too.
