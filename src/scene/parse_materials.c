@@ -176,6 +176,21 @@ static pls_status fill_input(pls_scene *scene, const pls_scene_shape *shape, sha
     return PLS_OK;
 }
 
+/// What the last message is about: the row whose file it names or whose name it quotes, else the shape as a whole.
+static const pls_node *blamed(const pls_scene_shape *shape, const pls_shape_input *input)
+{
+    const pls_node *map = shape->node->child[0];
+    for (const pls_parameter *row = shape->ops->parameters; row && row->name; ++row)
+    {
+        const pls_node *node = pls_node_get(map, row->name);
+        char quoted[PLS_NAME_SIZE + 8];
+        snprintf(quoted, sizeof quoted, "'%s'", row->name);
+        const char *told = row->kind == PLS_PARAMETER_PATH && input->path ? input->path : quoted;
+        if (node && strstr(pls_last_message(), told)) return node;
+    }
+    return shape->node;
+}
+
 static pls_status make_shape(pls_scene *scene, size_t k)
 {
     pls_scene_shape *shape = &scene->shapes[k];
@@ -186,8 +201,10 @@ static pls_status make_shape(pls_scene *scene, size_t k)
     snprintf(owner, sizeof owner, "shape '%s'", shape->name);
     pls_status status = fill_input(scene, shape, &in);
     if (status == PLS_OK)
-        status = pls_node_context(pls_shape_make(shape->ops, scene->dimension, &in.input, owner, &shape->made), shape->node, "shape '%s'",
-                                  shape->name);
+    {
+        status = pls_shape_make(shape->ops, scene->dimension, &in.input, owner, &shape->made);
+        status = pls_node_context(status, blamed(shape, &in.input), "%s", ""); // the message names the shape
+    }
     pls_release(&in.points);
     pls_release(&in.parts);
     return status;
