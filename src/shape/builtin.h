@@ -8,8 +8,8 @@ extern const pls_shape_ops pls_sphere_shape, pls_plane_shape, pls_box_shape, pls
     pls_superquadric_shape, pls_polyhedron_shape, pls_prism_shape, pls_compound_shape, pls_mesh_shape;
 extern const pls_shape_ops pls_disc_shape, pls_half_plane_shape, pls_ellipse_shape, pls_polygon_shape, pls_polyline_shape; // 2D
 
-/// A sphere or disc, whose contacts are found by centre and radius alone.
-static inline bool pls_shape_is_ball(const pls_shape *shape) { return shape->ops->sdf == pls_sphere_shape.sdf; }
+/// A sphere or disc, whose contacts are found by centre and radius alone: its centre of mass is its middle.
+static inline bool pls_shape_is_ball(const pls_shape *shape) { return shape->ops->sdf == pls_sphere_shape.sdf && !shape->uneven; }
 /// A half-space or half-plane.
 static inline bool pls_shape_is_plane(const pls_shape *shape) { return shape->ops->sdf == pls_plane_shape.sdf; }
 

@@ -257,20 +257,41 @@ static void find_principal(pls_shape *shape)
     shape->moments = pls_vec(value[0], value[1], value[2]);
 }
 
+/// As if the density were 1: exactly, or by quadrature.
+static pls_status measure_even_mass(const pls_shape *shape, const char *name, const pls_sdf_least *least, pls_mass_properties *out)
+{
+    if (shape->ops->mass_properties) return named(shape->ops->mass_properties(shape, out), name);
+    const pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
+    const pls_status status = pls_mass_by_quadrature(shape, middle, pls_shape_reach(shape, middle), out);
+    if (status == PLS_INVALID_ARGUMENT && !(least->phi < 0.0)) return pls_sdf_no_inside(name, least);
+    return named(status, name);
+}
+
+/// A density that varies is for the quadrature, unless the shape's own exact mass is by it.
+static pls_status measure_uneven_mass(pls_shape *shape, const char *name)
+{
+    const bool exact = shape->ops->mass_properties && shape->ops->density && !shape->density;
+    const pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
+    const double reach = pls_shape_reach(shape, middle) * (1.0 + 1e-9);
+    if (exact)
+    {
+        pls_mass_properties even;
+        PLS_TRY(named(pls_mass_by_quadrature(shape, middle, reach, &even), name));
+        shape->volume = even.volume;
+        return PLS_OK;
+    }
+    return named(pls_uneven_mass_by_quadrature(shape, middle, reach, &shape->mass), name);
+}
+
 /// Volume, centre of mass, principal frame; the bounding sphere is about that centre.
 static pls_status measure_mass(pls_shape *shape, const char *name, const pls_sdf_least *least)
 {
     const pls_shape_ops *ops = shape->ops;
-    pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
-    if (ops->mass_properties)
-        PLS_TRY(named(ops->mass_properties(shape, &shape->mass), name));
-    else
-    {
-        pls_status status = pls_mass_by_quadrature(shape, middle, pls_shape_reach(shape, middle), &shape->mass);
-        if (status == PLS_INVALID_ARGUMENT && !(least->phi < 0.0)) return pls_sdf_no_inside(name, least);
-        PLS_TRY(named(status, name));
-    }
-    shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : pls_shape_reach(shape, shape->mass.centre);
+    PLS_TRY(measure_even_mass(shape, name, least, &shape->mass));
+    shape->volume = shape->mass.volume;
+    if (shape->uneven) PLS_TRY(measure_uneven_mass(shape, name));
+    const bool moved = shape->uneven || !ops->bounding_radius; // the shape's own sphere is about the centre of even mass
+    shape->radius = moved ? pls_shape_reach(shape, shape->mass.centre) : ops->bounding_radius(shape);
     if (!(shape->radius > 0.0) || !isfinite(shape->radius) || !(shape->mass.volume > 0.0) || !isfinite(shape->mass.volume))
         return pls_fail(PLS_INVALID_ARGUMENT, "%s has radius %g m and volume %g; both must be positive and finite", name, shape->radius,
                         shape->mass.volume);
@@ -288,6 +309,8 @@ static pls_status measure(pls_shape *shape, const char *name)
     shape->convex = ops->convex || (ops->is_convex && ops->is_convex(shape));
     shape->margin = ops->margin ? ops->margin(shape) : 0.0;
     shape->polytope = ops->polytope ? ops->polytope(shape) : NULL;
+    if ((ops->unbounded || ops->wall) && shape->density)
+        return pls_fail(PLS_INVALID_ARGUMENT, "%s: a %s has no mass, and so no density", name, ops->name);
     if (ops->unbounded) return PLS_OK;
     if (ops->parts) PLS_TRY(take_parts(shape));
     pls_sdf_least least;
@@ -362,7 +385,11 @@ static pls_status fill(shape_with_values *block, const pls_shape_input *input, c
     mine.values = shape->values;
     mine.value_count = (size_t)pls_parameter_values(ops->parameters);
     if (ops->prepare) PLS_TRY(named(ops->prepare(&mine, shape->dimension, &shape->data), name));
-    return measure(shape, name);
+    shape->density = input->density;
+    shape->uneven = ops->density || input->density;
+    const pls_status status = measure(shape, name);
+    shape->density = NULL;
+    return status;
 }
 
 pls_status pls_shape_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input, const char *name, pls_shape **out)
