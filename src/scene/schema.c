@@ -213,7 +213,7 @@ static const pls_key keys[] = {
      "grain's own surface (P1 eq. 15b, LAMMPS)"},
     {"contact", "solver", PLS_KEY_WORD, 0, 0, "depth|admm", NULL, "", "depth", ANY,
      "overlap of shapes that are not spheres: the penetration depth, or P1 eq. 14 by ADMM (not conservative where edges and corners "
-     "overlap)"},
+     "overlap; only for convex shapes and compounds of such, others are refused)"},
     {"contact", "faces", PLS_KEY_WORD, 0, 0, "auto|point|manifold|volume", NULL, "", "auto", ANY,
      "where faces lie on each other: the force acts at the deepest point (quickest; faces rattle), follows a smooth maximum of the "
      "overlap's "
