@@ -259,7 +259,8 @@ static double refine(tree *t, double sum[PLS_MOMENTS])
     else
         plant(t, &all, FIRST);
     double error = total(t, sum);
-    for (size_t turn = 1; t->count > 0 && t->count + 8 < MOST_CELLS && error > target; ++turn)
+    const pls_density_fault *fault = t->frame.uneven; // after which nothing counts any more
+    for (size_t turn = 1; !(fault && fault->found) && t->count > 0 && t->count + 8 < MOST_CELLS && error > target; ++turn)
     {
         error += divide_worst(t);
         if (turn % 64 == 0 || error <= target) error = total(t, sum); // anew: differences leave round-off
@@ -305,6 +306,13 @@ static void try_ends(const pls_column_frame *frame)
     }
 }
 
+static pls_status no_density(const pls_density_fault *fault)
+{
+    return pls_fail(PLS_INVALID_ARGUMENT,
+                    "the density is %g times the material's at (%g, %g, %g) m; it must be positive and finite all over the shape",
+                    fault->value, fault->at.x, fault->at.y, fault->at.z);
+}
+
 static pls_status by_quadrature(const pls_shape *shape, pls_density_fault *uneven, pls_vec3 origin, double reach, pls_mass_properties *out)
 {
     // About (1, 1, 1) by 60 degrees all axes would have components of 1/3 and 2/3 along all others; a little off, so that nothing coincides.
@@ -317,13 +325,11 @@ static pls_status by_quadrature(const pls_shape *shape, pls_density_fault *uneve
     t.frame.axis[1] = pls_rotate(turn, pls_vec(0.0, 1.0, 0.0));
     t.frame.axis[2] = pls_rotate(turn, pls_vec(0.0, 0.0, 1.0));
     if (uneven) try_ends(&t.frame);
+    if (uneven && uneven->found) return no_density(uneven);
     PLS_TRY(pls_allocate(&t.heap, MOST_CELLS, sizeof *t.heap, "cells of the mass quadrature"));
     out->error = refine(&t, m);
     pls_release(&t.heap);
-    if (uneven && uneven->found)
-        return pls_fail(PLS_INVALID_ARGUMENT,
-                        "the density is %g times the material's at (%g, %g, %g) m; it must be positive and finite all over the shape",
-                        uneven->value, uneven->at.x, uneven->at.y, uneven->at.z);
+    if (uneven && uneven->found) return no_density(uneven);
     if (!(m[0] > 0.0)) return pls_fail(PLS_INVALID_ARGUMENT, "the shape has no volume: its SDF is negative nowhere");
     tell(&t, m, out);
     return PLS_OK;
