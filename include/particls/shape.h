@@ -129,9 +129,6 @@ struct pls_shape
     const pls_polytope *polytope;     ///< or null
     double inner_radius;              ///< of balls that touch the surface from inside and fit everywhere; not convex: 0 [m]
     double radius;                    ///< of the bounding sphere about the centre of mass [m]; INFINITY if unbounded
-    double volume;                    ///< that it fills, whatever its density [m^3], 2D: its area [m^2]
-    bool uneven;                      ///< its density varies in space: `mass` is by that density
-    const pls_density_field *density; ///< while it is made: that of its input
     pls_vec3 lower, upper;            ///< bounds [m]
     pls_mass_properties mass;         ///< as measured, in the shape's frame
     pls_vec3 moments;                 ///< principal moments about the centre of mass; 2D: only z
@@ -139,6 +136,9 @@ struct pls_shape
     const pls_shape_part *part;       ///< what it is the union of, in an order in which neighbours lie together; null: itself
     size_t part_count;                ///< 0: the shape itself is its one part
     pls_part_tree *tree;              ///< over the parts; null without
+    double volume;                    ///< that it fills, whatever its density [m^3], 2D: its area [m^2]
+    bool uneven;                      ///< its density varies in space: `mass` is by that density
+    const pls_density_field *density; ///< while it is made: that of its input
 };
 
 /// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.
