@@ -93,6 +93,26 @@ static pls_status foot_of(const pls_shape *shape, const char *name, pls_vec3 X, 
     return isfinite(*left) ? PLS_OK : not_finite(name, *left, *foot);
 }
 
+/// Down the slope by the distance, by less where that leads up: of a true distance to the surface, from anywhere outside.
+static pls_sdf_least descend(const pls_shape *shape, pls_vec3 X)
+{
+    pls_sdf_least least = {.phi = pls_shape_sdf(shape, X), .at = X};
+    double part = 1.0;
+    for (int k = 0; k < DESCENTS && least.phi > 0.0; ++k)
+    {
+        const pls_vec3 g = pls_shape_gradient(shape, least.at);
+        const double slope = pls_length(g);
+        if (!(slope > 0.0)) break;
+        const pls_vec3 next = pls_sub(least.at, pls_scale(g, part * least.phi / slope));
+        const double phi = pls_shape_sdf(shape, next);
+        if (phi < least.phi)
+            least = (pls_sdf_least){.phi = phi, .at = next};
+        else
+            part *= 0.5;
+    }
+    return least;
+}
+
 // ---- the size, and why there is none ----------------------------------------------------------------------------------------------------------------------------
 
 /// A length to begin with: how far the surface is from the origin, if the SDF is right.
@@ -120,18 +140,6 @@ static pls_status try_around_origin(const pls_shape *shape, const char *name, do
     return PLS_OK;
 }
 
-static pls_sdf_least descend(const pls_shape *shape, pls_vec3 X)
-{
-    pls_sdf_least least = {.phi = pls_shape_sdf(shape, X), .at = X};
-    for (int k = 0; k < DESCENTS; ++k)
-    {
-        X = pls_sub(X, pls_scale(pls_shape_gradient(shape, X), 0.5 * pls_shape_sdf(shape, X)));
-        const double phi = pls_shape_sdf(shape, X);
-        if (phi < least.phi) least = (pls_sdf_least){.phi = phi, .at = X};
-    }
-    return least;
-}
-
 /// Far away the distances along e and -e of a bounded set are 2 t less its width.
 static pls_status try_far_away(pls_shape *shape, const char *name, double unit)
 {
@@ -152,11 +160,9 @@ static pls_status try_far_away(pls_shape *shape, const char *name, double unit)
             "the SDF of %s is negative in all directions far away, where it must be positive: %g m at (%g, %g, %g) m. It is the "
             "distance from the surface outside, and less than 0 inside: is its sign the other way round?",
             name, phi[where], t * axes[where].x, t * axes[where].y, t * axes[where].z);
+    const pls_sdf_least least = descend(shape, pls_vec(0.0, 0.0, 0.0));
     for (int a = 0; a < count; a += 2)
-    {
-        const pls_sdf_least least = descend(shape, pls_vec(0.0, 0.0, 0.0));
         if ((t - phi[a]) + (t - phi[a + 1]) < -foot_error * unit && least.phi >= 0.0) return pls_sdf_no_inside(name, &least);
-    }
     for (int a = 0; a < count; ++a)
     {
         if (phi[a] <= 0.0) continue;
@@ -297,6 +303,8 @@ pls_status pls_sdf_try(const pls_shape *shape, const char *name, pls_sdf_least *
         if (fabs(left) > foot_error * (shape->size + at_a))
         {
             PLS_TRY(try_chord(shape, name, a, foot)); // a jump between them is the better reason
+            const pls_sdf_least low = descend(shape, a);
+            if (low.phi > foot_error * shape->size && least->phi > 0.0) return pls_sdf_no_inside(name, low.phi < least->phi ? &low : least);
             return no_distance(name, at_a, a, left, foot);
         }
         if (alone && shape->convex && (feet++ & 1)) PLS_TRY(try_convex(shape, name, before, foot));

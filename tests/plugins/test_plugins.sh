@@ -42,6 +42,24 @@ for source in template/my_plugin cohesion/linear_cohesion torus/torus drag/stoke
     grep -q '^### ' info.txt || complain "the plugin of plugins/$source.c brings nothing"
 done
 
+# A shape whose SDF lies: the scene's line, the shape's name once, the reason with the point and the value.
+sed -e 's/- shape->values\[TUBE\];/+ shape->values[TUBE];/' "$PARTICLS_SOURCE/plugins/torus/torus.c" >lie.c
+"$CC" "${flags[@]}" lie.c -o lie.so || complain "the SDF that lies does not compile"
+cat >lie.yaml <<'YAML'
+particls: 1
+plugins: [./lie.so]
+materials: {grain: {density: 2000}}
+shapes:
+  ring: {torus: {ring_radius: 0.3, tube_radius: 0.1}}
+bodies: [{shape: ring, material: grain, position: [0, 0, 0]}]
+time: {end: 1, dt: 1.0e-3}
+YAML
+"$PARTICLS" check lie.yaml >said.txt 2>&1 && complain "an SDF that is nowhere negative is taken"
+for line in "^particls: lie.yaml:5:9: the SDF of shape 'ring' is nowhere negative: the least value found is 0.1 m, at (.*) m; inside it must be negative$" \
+    '^    5 |   ring: {torus: {ring_radius: 0.3, tube_radius: 0.1}}$' '^      |         ^$'; do
+    grep -q -- "$line" said.txt || complain "of an SDF that lies is said: $(cat said.txt)"
+done
+
 # A loose heap that falls on a floor and slides: all that a law can do.
 heap() { # <law> <further parameters>
     cat <<YAML

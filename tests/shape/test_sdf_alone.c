@@ -232,6 +232,7 @@ LIE(nothing, r + 1.0)
 LIE(shell_without_an_inside, fabs(r - 0.1))
 LIE(wrong_sign, 0.1 - r)
 LIE(wrong_sign_off_centre, 0.1 - pls_length(pls_sub(X, pls_vec(1.0, 2.0, 0.0))))
+LIE(ring_plus_a_length, hypot(hypot(X.x, X.y) - 0.3, X.z) + 0.1)
 LIE(inside_all_over, -0.2)
 
 static void signs(void **state)
@@ -239,6 +240,7 @@ static void signs(void **state)
     (void)state;
     expect_refused(ball_plus_a_length, true, "is nowhere negative: the least value found is ", "is 0.1 m, at (0, 0, 0) m");
     expect_refused(nothing, false, "is nowhere negative: the least value found is ", "is 1 m, at (0, 0, 0) m");
+    expect_refused(ring_plus_a_length, false, "is nowhere negative: the least value found is ", "is 0.1 m, at (");
     expect_refused(shell_without_an_inside, false, "is nowhere negative: the least value found is ", " m, at (");
     expect_refused(wrong_sign, true, "is negative in all directions far away, where it must be positive: ", " m at (");
     expect_refused(wrong_sign_off_centre, true, "is negative in all directions far away, where it must be positive: ", " m at (");
