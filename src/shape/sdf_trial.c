@@ -28,6 +28,9 @@ static const double remote = 1e6;         ///< units from where a bounded shape 
 
 static const pls_vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 
+/// All that there is of the shape is its SDF.
+static bool is_alone(const pls_shape *shape) { return !shape->ops->mass_properties && !shape->ops->wall; }
+
 // ---- messages -------------------------------------------------------------------------------------------------------------------------------------------------
 
 static pls_status not_finite(const char *name, double phi, pls_vec3 X)
@@ -199,7 +202,8 @@ pls_status pls_sdf_guess_size(pls_shape *shape, const char *name)
         if (reach > 0.0 && reach < 0.1 * t && fabs(reach - size) < 0.05 * reach)
         {
             shape->size = reach;
-            return PLS_OK;
+            return is_alone(shape) ? try_around_origin(shape, name, reach)
+                                   : PLS_OK; // bounds are sought by the SDF, which must be none that leads away
         }
         size = reach;
     }
@@ -283,7 +287,7 @@ static pls_status try_chords(const pls_shape *shape, const char *name, pls_rando
 
 pls_status pls_sdf_try(const pls_shape *shape, const char *name, pls_sdf_least *least)
 {
-    const bool alone = !shape->ops->mass_properties && !shape->ops->wall;
+    const bool alone = is_alone(shape);
     pls_random random = pls_random_stream(1, 0, PLS_FOR_USER);
     pls_vec3 before = pls_vec(0.0, 0.0, 0.0);
     int feet = 0;

@@ -182,6 +182,7 @@ LIE(twice_too_steep, r < 1.0 ? 2.0 * (r - 1.0) : r - 1.0)
 LIE(twice_too_steep_all_over, 2.0 * (r - 0.1))
 LIE(squared, r *r - 1.0)
 LIE(squared_small, r *r - 0.01)
+LIE(stretched_ball, pls_length(pls_vec(X.x, X.y, 2.0 * X.z)) - 0.3)
 
 static void slopes_above_one(void **state)
 {
@@ -191,6 +192,7 @@ static void slopes_above_one(void **state)
     expect_refused(twice_too_steep_all_over, true, because, " m, by 2 times the way");
     expect_refused(squared, true, because, " times the way");
     expect_refused(squared_small, true, because, " times the way");
+    expect_refused(stretched_ball, true, because, " times the way");
 }
 
 LIE(half_the_distance, r < 3.0 ? 0.5 * (r - 1.0) : r - 2.0)
