@@ -12,7 +12,7 @@
 enum {
     TRIALS = 2000,     ///< pairs of points
     CHORDS_2D = 60,    ///< looked along for jumps: a few percent of the calls that the mass takes, which are fewer in 2D
-    CHORDS_3D = 800,   //
+    CHORDS_3D = 800,   ///< the same in 3D
     PIECES = 32,       ///< of such a chord
     HALVINGS = 20,     ///< of a steep piece, until it is a millionth as long
     LAST_HALVINGS = 8, ///< over which a jump stays while a slope shrinks to 1/256
