@@ -35,7 +35,7 @@ static void print_shapes(const pls_scene *scene)
         if (shape->part_count > 0) printf(" of %zu part%s", shape->part_count, shape->part_count == 1 ? "" : "s");
         if (!shape->ops->unbounded) printf(", radius %.6g m", shape->radius);
         if (!shape->ops->unbounded && !shape->ops->wall)
-            printf(", %s %.6g m^%d", shape->dimension == 2 ? "area" : "volume", shape->mass.volume, shape->dimension);
+            printf(", %s %.6g m^%d", shape->dimension == 2 ? "area" : "volume", shape->volume, shape->dimension);
         if (shape->mass.error > 0.0) printf(" (measured, to a part of %.1g)", shape->mass.error);
         printf("\n");
     }

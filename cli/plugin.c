@@ -2,6 +2,8 @@
 
 #include "cli.h"
 
+#include <particls/types.h>
+
 #include <getopt.h>
 #include <limits.h>
 #include <stdio.h>
@@ -18,34 +20,79 @@ static const cli_option options[] = {
 
 /// Where the public headers are, seen from the folder of the program: when installed, and in build trees.
 static const char *const places[] = {"../include", "../../include", "../../../include"};
+enum { PLACES = sizeof places / sizeof places[0], API_NOT_TOLD = -1 };
 
-/// Find the headers; false when they are not there.
-static bool find_headers(char folder[PATH_MAX])
+/// The folder of the program itself, links followed; false when the system does not say.
+static bool find_program(char folder[PATH_MAX])
 {
-    char program[PATH_MAX];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    const ssize_t length = readlink("/proc/self/exe", folder, PATH_MAX - 1);
     if (length <= 0) return false;
-    program[length] = '\0';
-    char *slash = strrchr(program, '/');
-    if (!slash) return false;
-    *slash = '\0';
-    for (size_t k = 0; k < sizeof places / sizeof places[0]; ++k)
+    folder[length] = '\0';
+    char *slash = strrchr(folder, '/');
+    if (slash) *slash = '\0';
+    return slash != NULL;
+}
+
+/// The API that the headers in a folder are of.
+static int api_of(const char *folder)
+{
+    char path[PATH_MAX + 64], line[256];
+    int api = API_NOT_TOLD;
+    snprintf(path, sizeof path, "%s/particls/types.h", folder);
+    FILE *file = fopen(path, "r");
+    while (file && api == API_NOT_TOLD && fgets(line, sizeof line, file))
+        if (sscanf(line, "#define PLS_API_VERSION %d", &api) != 1) api = API_NOT_TOLD;
+    if (file) fclose(file);
+    return api;
+}
+
+/// Without the dots where the folder is there, else as it was sought.
+static void tell_place(const char *program, const char *place, char folder[2 * PATH_MAX])
+{
+    char sought[2 * PATH_MAX], found[PATH_MAX];
+    snprintf(sought, sizeof sought, "%s/%s", program, place);
+    snprintf(folder, 2 * PATH_MAX, "%s", realpath(sought, found) ? found : sought);
+}
+
+static int no_headers(const char *program)
+{
+    fprintf(stderr, "particls: the headers for plugins are not where this program, in %s, looks for them:\n", program);
+    for (size_t k = 0; k < PLACES; ++k)
     {
-        char header[2 * PATH_MAX];
-        char candidate[PATH_MAX + 32];
-        snprintf(candidate, sizeof candidate, "%s/%s", program, places[k]);
-        snprintf(header, sizeof header, "%s/particls/plugin.h", candidate);
-        if (access(header, R_OK) == 0 && realpath(candidate, folder)) return true;
+        char folder[2 * PATH_MAX];
+        tell_place(program, places[k], folder);
+        const int api = api_of(folder);
+        if (api == API_NOT_TOLD)
+            fprintf(stderr, "  %s: there is no particls/types.h that tells an API\n", folder);
+        else
+            fprintf(stderr, "  %s: headers of API %d, the program has %d\n", folder, api, PLS_API_VERSION);
     }
-    return false;
+    fprintf(stderr,
+            "A copy of the program does not find them. Run it from its build tree or from where `make install PREFIX=...` put it, through "
+            "PATH or a symbolic link\n");
+    return CLI_FAILED;
 }
 
 static int print_cflags(void)
 {
-    char folder[PATH_MAX];
-    if (!find_headers(folder))
+    char program[PATH_MAX], folder[2 * PATH_MAX] = "";
+    if (!find_program(program))
     {
-        fprintf(stderr, "particls: the headers of particls are not installed beside the program: install particls with its headers\n");
+        fprintf(stderr,
+                "particls: the headers for plugins are sought from the program's folder, which /proc/self/exe does not tell here\n");
+        return CLI_FAILED;
+    }
+    bool found = false;
+    for (size_t k = 0; k < PLACES && !found; ++k)
+    {
+        tell_place(program, places[k], folder);
+        found = api_of(folder) == PLS_API_VERSION;
+    }
+    if (!found) return no_headers(program);
+    if (strpbrk(folder, " \t\n*?["))
+    {
+        fprintf(stderr, "particls: the headers for plugins are in '%s', a name that a shell would take apart. Compile with\n  %s -I'%s'\n",
+                folder, PLS_PLUGIN_FLAGS, folder);
         return CLI_FAILED;
     }
     // -ffp-contract=off and the like: without them results depend on the machine

@@ -12,7 +12,8 @@ extern "C" {
 /// What the overlap of two shapes is.
 typedef enum pls_solver {
     PLS_SOLVER_DEPTH, ///< the penetration depth: the shortest way that parts them
-    PLS_SOLVER_ADMM   ///< P1 eq. 14: the deepest point of each in the other, by ADMM. Not conservative where edges and corners overlap
+    PLS_SOLVER_ADMM ///< P1 eq. 14: the deepest point of each in the other, by ADMM. Not conservative where edges and corners overlap. For convex shapes and
+                    ///< compounds of such: a step in which others come close fails (INVALID_ARGUMENT)
 } pls_solver;
 
 /// What the law is asked with where faces are nearly parallel. All but the first go by the whole line too where capsules, rounded bodies and cylinders lie along one.

@@ -17,7 +17,7 @@ typedef struct pls_shape pls_shape;
 /// Volume and moments at the shape's own density, 1 unless it says otherwise. In 2D `volume` is the area; the world multiplies by its thickness.
 typedef struct pls_mass_properties
 {
-    double volume;     ///< integral of the density [m^3], 2D [m^2]
+    double volume;     ///< integral of the density [m^3], 2D [m^2]; what the shape fills is `volume` of the shape
     pls_vec3 centre;   ///< centre of mass, in the shape's frame [m]
     double inertia[6]; ///< tensor about the centre of mass: xx, yy, zz, xy, xz, yz [m^5]; 2D: only zz [m^4]
     double error;      ///< estimated relative error of the quadrature; 0: closed form
@@ -49,6 +49,13 @@ typedef struct pls_shape_part
 typedef struct pls_part_tree pls_part_tree;
 typedef struct pls_surface_sample pls_surface_sample;
 
+/// A density that varies in space, relative to the material's.
+typedef struct pls_density_field
+{
+    double (*at)(void *context, pls_vec3 X); ///< X in the shape's frame, before the body's scale; positive and finite all over the shape
+    void *context;
+} pls_density_field;
+
 typedef struct pls_shape_input
 {
     const double *values;   ///< as the table of parameters says; null: all defaults
@@ -58,6 +65,7 @@ typedef struct pls_shape_input
     const char *path;            ///< of its row of kind PLS_PARAMETER_PATH; null: not given
     const pls_shape_part *parts; ///< of its row of kind PLS_PARAMETER_SHAPES
     size_t part_count;
+    const pls_density_field *density; ///< times the operations' own; null: 1. Asked while the shape is made, by one thread, and not kept
 } pls_shape_input;
 
 /// Operations of a shape. Null where a default from `sdf` should serve. All but `prepare` and `release` are pure functions and are called from several threads.
@@ -118,22 +126,26 @@ struct pls_shape
     void *data;           ///< what `prepare` made
     double size;          ///< how far it reaches from the origin, roughly [m]
     bool convex;
-    double margin;                ///< [m]
-    const pls_polytope *polytope; ///< or null
-    double inner_radius;          ///< of balls that touch the surface from inside and fit everywhere; not convex: 0 [m]
-    double radius;                ///< of the bounding sphere about the centre of mass [m]; INFINITY if unbounded
-    pls_vec3 lower, upper;        ///< bounds [m]
-    pls_mass_properties mass;     ///< as measured, in the shape's frame
-    pls_vec3 moments;             ///< principal moments about the centre of mass; 2D: only z
-    pls_quat principal;           ///< turns principal axes into the shape's axes
-    const pls_shape_part *part;   ///< what it is the union of, in an order in which neighbours lie together; null: itself
-    size_t part_count;            ///< 0: the shape itself is its one part
-    pls_part_tree *tree;          ///< over the parts; null without
-    pls_surface_sample *sample;   ///< pieces of its surface, where contact goes by them; else null
+    double margin;                    ///< [m]
+    const pls_polytope *polytope;     ///< or null
+    double inner_radius;              ///< of balls that touch the surface from inside and fit everywhere; not convex: 0 [m]
+    double radius;                    ///< of the bounding sphere about the centre of mass [m]; INFINITY if unbounded
+    pls_vec3 lower, upper;            ///< bounds [m]
+    pls_mass_properties mass;         ///< as measured, in the shape's frame
+    pls_vec3 moments;                 ///< principal moments about the centre of mass; 2D: only z
+    pls_quat principal;               ///< turns principal axes into the shape's axes
+    const pls_shape_part *part;       ///< what it is the union of, in an order in which neighbours lie together; null: itself
+    size_t part_count;                ///< 0: the shape itself is its one part
+    pls_part_tree *tree;              ///< over the parts; null without
+    double volume;                    ///< that it fills, whatever its density [m^3], 2D: its area [m^2]
+    bool uneven;                      ///< its density varies in space: `mass` is by that density
+    const pls_density_field *density; ///< while it is made: that of its input
+    pls_surface_sample *sample;       ///< pieces of its surface, where contact goes by them; else null
 };
 
 /// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.
-/// INVALID_ARGUMENT tells where an SDF lies: not finite, not negative at the centre of mass (convex shapes), steeper than 1, or positive all over.
+/// INVALID_ARGUMENT tells where an SDF lies, with the point and the value: not finite, steeper than 1 or less steep, with jumps, of the wrong sign, nowhere negative, or
+/// not convex though the shape is said to be. `name` begins or is in all messages but those of memory.
 pls_status pls_shape_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input, const char *name,
                           pls_shape **out); // `name` starts messages: "shape 'stone'"
 /// One more keeper of the shape, who frees it too.

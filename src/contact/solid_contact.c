@@ -576,7 +576,7 @@ pls_vec3 pls_solid_last_spring(const pls_solid_list *list, const pls_contact_inp
 
 static double equal_radius(const pls_posed *p)
 {
-    double volume = p->shape->mass.volume;
+    double volume = p->shape->volume;
     if (!(volume > 0.0) || !isfinite(volume)) return INFINITY; // walls
     return p->scale * (p->shape->dimension == 2 ? sqrt(volume / M_PI) : cbrt(0.75 * volume / M_PI));
 }

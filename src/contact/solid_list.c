@@ -87,6 +87,11 @@ pls_posed pls_posed_part(const pls_posed *whole, uint32_t part)
 
 // ---- candidates -------------------------------------------------------------------------------------------------------------------------------------------
 
+static bool is_convex_part(const pls_shape *whole, uint32_t part)
+{
+    return whole->part_count > 0 ? whole->part[part].shape->convex : whole->convex;
+}
+
 static pls_status missing_law(const pls_solid_source *s, uint32_t i, uint32_t j)
 {
     const pls_bodies *b = s->bodies;
@@ -95,6 +100,22 @@ static pls_status missing_law(const pls_solid_source *s, uint32_t i, uint32_t j)
                     "bodies %u and %u come close, but no contact law is given between their materials '%s' and '%s'. Add one: contact: "
                     "[{between: [%s, %s], law: ...}]",
                     b->kind[i].number, b->kind[j].number, first, second, first, second);
+}
+
+/// ADMM is for convex shapes; the depth in its place would be another model than was asked for.
+static pls_status check_solver(const pls_solid_source *s, const pls_law *law, uint32_t i, uint32_t j, uint32_t part_i, uint32_t part_j)
+{
+    if (law->narrow.solver != PLS_SOLVER_ADMM) return PLS_OK;
+    const pls_bodies *b = s->bodies;
+    const bool first = !is_convex_part(s->shape[b->kind[i].shape], part_i);
+    if (!first && is_convex_part(s->shape[b->kind[j].shape], part_j)) return PLS_OK;
+    const pls_body_kind *bad = &b->kind[first ? i : j];
+    const char *a = s->laws->material[b->kind[i].material].name, *c = s->laws->material[b->kind[j].material].name;
+    return pls_fail(
+        PLS_INVALID_ARGUMENT,
+        "bodies %u and %u come close, and solver admm is set for their materials '%s' and '%s', but the shape of body %u (%s) is "
+        "not convex. Set solver depth for this pair, or make the shape a compound of convex ones",
+        b->kind[i].number, b->kind[j].number, a, c, bad->number, s->shape[bad->shape]->ops->name);
 }
 
 static pls_status room_for(pls_solid_list *list, size_t count)
@@ -134,6 +155,7 @@ static pls_status add_candidate(pls_solid_list *list, const pls_solid_source *s,
     const pls_body_kind *i = &s->bodies->kind[pair->owner], *j = &s->bodies->kind[pair->partner];
     uint16_t law = pls_law_table_find(s->laws, i->material, j->material);
     if (law == PLS_NO_LAW) return missing_law(s, pair->owner, pair->partner);
+    PLS_TRY(check_solver(s, &s->laws->law[law], pair->owner, pair->partner, part_i, part_j));
     PLS_TRY(sample_parts(shape_of_part(s->shape[i->shape], part_i), shape_of_part(s->shape[j->shape], part_j)));
     PLS_TRY(room_for(list, list->count + 1));
     size_t c = list->count++;

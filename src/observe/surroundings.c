@@ -24,7 +24,7 @@ pls_solid pls_surroundings_solid(const pls_surroundings *around, uint32_t row)
         .orientation = {turned->w, turned->x, turned->y, turned->z},
         .scale = scale,
         .radius = place->radius,
-        .volume = shape->mass.volume * scale * scale * (dimension == 3 ? scale : 1),
+        .volume = shape->volume * scale * scale * (dimension == 3 ? scale : 1),
     };
 }
 

@@ -5,6 +5,8 @@
 
 #include "scene/build.h"
 
+#include "shape/builtin.h"
+
 #include <string.h>
 
 // ---------------------------------------------------------------------------------------------------------------------------------------
@@ -116,6 +118,50 @@ static pls_status set_law(pls_builder *b, const pls_scene_contact *contact, size
     return pls_node_context(status, contact->node, "contact");
 }
 
+/// Whether the entries may touch each other at all: one of them moves, and they are not one and the same body.
+static bool may_meet(const pls_builder *b, size_t p, size_t q)
+{
+    const size_t entry[2] = {p, q};
+    int still = 0;
+    for (int e = 0; e < 2; ++e)
+    {
+        const pls_scene_body *body = &b->scene->bodies[entry[e]];
+        const pls_shape_ops *ops = pls_scene_choice_shape(b->scene, body, 0)->ops;
+        still += ops->unbounded || ops->wall || pls_scene_boolean(body->node, "fixed", false);
+    }
+    return still < 2 && (p != q || b->points[p].count > 1);
+}
+
+static pls_status check_convex(const pls_builder *b, const pls_scene_contact *contact, size_t i, size_t j, size_t entry)
+{
+    const pls_scene_body *body = &b->scene->bodies[entry];
+    for (size_t c = 0; c < body->choices; ++c)
+    {
+        const pls_scene_shape *shape = pls_scene_choice_shape(b->scene, body, c);
+        if (!pls_shape_concave_part(shape->made)) continue;
+        return pls_node_fail(pls_node_get(contact->node, "solver"),
+                             "give the pair an entry of its own with  solver: depth, or make the shape a compound of convex ones",
+                             "'solver: admm' is for convex shapes, but between '%s' and '%s' the shape '%s' (%s) of the bodies '%s' is not",
+                             b->scene->materials[i].name, b->scene->materials[j].name, shape->name, shape->ops->name, body->name);
+    }
+    return PLS_OK;
+}
+
+/// Before the run, which would fail only when the first such bodies come close.
+static pls_status check_solver(pls_builder *b, const pls_scene_contact *contact, size_t i, size_t j)
+{
+    const pls_scene *scene = b->scene;
+    if (strcmp(pls_node_get(contact->node, "solver")->text, "admm") != 0) return PLS_OK;
+    for (size_t p = 0; p < scene->body_count; ++p)
+        for (size_t q = 0; q < scene->body_count; ++q)
+        {
+            if (scene->bodies[p].material != (int)i || scene->bodies[q].material != (int)j || !may_meet(b, p, q)) continue;
+            PLS_TRY(check_convex(b, contact, i, j, p));
+            PLS_TRY(check_convex(b, contact, i, j, q));
+        }
+    return PLS_OK;
+}
+
 static pls_status bind_parameter(const pls_builder *b, const pls_key *key, const pls_node *node, size_t place, void *pair)
 {
     (void)place;
@@ -217,6 +263,7 @@ static pls_status build_all(pls_builder *b)
     PLS_TRY(create_world(b));
     PLS_TRY(add_shapes(b));
     for (size_t k = 0; k < b->scene->material_count; ++k) PLS_TRY(add_material(b, k));
+    PLS_TRY(for_each_pair(b, check_solver));
     PLS_TRY(for_each_pair(b, set_law));
     PLS_TRY(pls_build_bodies(b));
     PLS_TRY(pls_build_forces(b));

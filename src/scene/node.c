@@ -177,6 +177,19 @@ pls_status pls_node_fail_at(const pls_node *at, size_t offset, const char *hint,
     return fail_at_place(at->source, at->line, column, hint, message);
 }
 
+/// The last message, with the place in front and, unless something within showed its own, the source line below.
+static pls_status show_place(pls_status status, const pls_node *at, const char *what)
+{
+    const char *gap = *what ? ": " : "";
+    if (!at->source->has_lines) return pls_fail_context(status, "%s: %s%s", at->source->name, what, gap);
+    const bool shown = strchr(pls_last_message(), '\n') != NULL;
+    pls_fail_context(status, "%s:%d:%d: %s%s", at->source->name, at->line, at->column, what, gap);
+    if (shown) return status;
+    char excerpt[640];
+    format_excerpt(at->source, at->line, at->column, excerpt, sizeof excerpt);
+    return pls_fail(status, "%s\n%s", pls_last_message(), excerpt);
+}
+
 pls_status pls_node_context(pls_status status, const pls_node *at, const char *format, ...)
 {
     if (status == PLS_OK || status == PLS_OUT_OF_MEMORY) return status;
@@ -186,6 +199,5 @@ pls_status pls_node_context(pls_status status, const pls_node *at, const char *f
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
     if (!at->source) return pls_fail_context(status, "%s: ", message);
-    if (!at->source->has_lines) return pls_fail_context(status, "%s: %s: ", at->source->name, message);
-    return pls_fail_context(status, "%s:%d:%d: %s: ", at->source->name, at->line, at->column, message);
+    return show_place(status, at, message);
 }

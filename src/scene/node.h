@@ -64,7 +64,8 @@ pls_status pls_node_fail_at(const pls_node *at, size_t offset, const char *hint,
 /// The same for a line and column of a source.
 pls_status pls_source_fail(const pls_source *source, int line, int column, const char *hint, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
-/// Put "file:line:column: what: " in front of the message of something that failed while the node was carried out.
+/// Put "file:line:column: what: " in front of the message of something that failed while the node was carried out, and the source line below it. Nothing stands for
+/// `what` where it is empty: the message says it.
 pls_status pls_node_context(pls_status status, const pls_node *at, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -106,9 +106,18 @@ void pls_scene_parameters(const pls_parameter *table, const pls_node *map, doubl
     }
 }
 
+/// A density given by an expression.
+typedef struct density_formula
+{
+    pls_formula *formula;
+    pls_formula_copy *copy; ///< of the one thread that makes the shape
+} density_formula;
+
 /// What a shape is made from besides its numbers, while it is made.
 typedef struct shape_input
 {
+    density_formula factor;
+    pls_density_field density;
     pls_shape_input input;
     double values[3 * PLS_MAX_PARAMETERS];
     pls_vec3 *points;
@@ -159,6 +168,36 @@ static pls_status take_parts(pls_scene *scene, const pls_node *list, shape_input
     return PLS_OK;
 }
 
+/// Where the expression has no value it is NaN, which the shape refuses with the place.
+static double factor_at(void *context, pls_vec3 X)
+{
+    const density_formula *f = context;
+    const double place[3] = {X.x, X.y, X.z};
+    double value;
+    return pls_formula_values(f->formula, f->copy, place, &value) == PLS_OK ? value : NAN;
+}
+
+static pls_status take_density(const pls_scene *scene, const pls_node *node, shape_input *in)
+{
+    char number[32];
+    const char *names[PLS_EXPRESSION_VARIABLES], *text = node->numeric ? pls_format_double(number, node->number) : node->text;
+    pls_symbols symbols;
+    PLS_TRY(pls_scene_symbols(scene, PLS_USES_PLACE, NULL, names, &symbols));
+    PLS_TRY(pls_formula_make(&text, 1, &symbols, &in->factor.formula));
+    PLS_TRY(pls_formula_begin(in->factor.formula, &in->factor.copy));
+    in->density = (pls_density_field){factor_at, &in->factor};
+    in->input.density = &in->density;
+    return PLS_OK;
+}
+
+static void release_input(shape_input *in)
+{
+    if (in->factor.copy) pls_formula_end(in->factor.formula, in->factor.copy);
+    pls_formula_drop(in->factor.formula);
+    pls_release(&in->points);
+    pls_release(&in->parts);
+}
+
 static pls_status fill_input(pls_scene *scene, const pls_scene_shape *shape, shape_input *in)
 {
     const pls_node *map = shape->node->child[0];
@@ -173,7 +212,23 @@ static pls_status fill_input(pls_scene *scene, const pls_scene_shape *shape, sha
         if (row->kind == PLS_PARAMETER_POINTS || row->kind == PLS_PARAMETER_FLAT_POINTS) PLS_TRY(take_points(node, in));
         if (row->kind == PLS_PARAMETER_SHAPES) PLS_TRY(take_parts(scene, node, in));
     }
-    return PLS_OK;
+    const pls_node *factor = pls_node_get(shape->node, "density_factor");
+    return factor ? take_density(scene, factor, in) : PLS_OK;
+}
+
+/// What the last message is about: the row whose file it names or whose name it quotes, else the shape as a whole.
+static const pls_node *blamed(const pls_scene_shape *shape, const pls_shape_input *input)
+{
+    const pls_node *map = shape->node->child[0];
+    for (const pls_parameter *row = shape->ops->parameters; row && row->name; ++row)
+    {
+        const pls_node *node = pls_node_get(map, row->name);
+        char quoted[PLS_NAME_SIZE + 8];
+        snprintf(quoted, sizeof quoted, "'%s'", row->name);
+        const char *told = row->kind == PLS_PARAMETER_PATH && input->path ? input->path : quoted;
+        if (node && strstr(pls_last_message(), told)) return node;
+    }
+    return input->density && strstr(pls_last_message(), "density") ? pls_node_get(shape->node, "density_factor") : shape->node;
 }
 
 static pls_status make_shape(pls_scene *scene, size_t k)
@@ -186,10 +241,11 @@ static pls_status make_shape(pls_scene *scene, size_t k)
     snprintf(owner, sizeof owner, "shape '%s'", shape->name);
     pls_status status = fill_input(scene, shape, &in);
     if (status == PLS_OK)
-        status = pls_node_context(pls_shape_make(shape->ops, scene->dimension, &in.input, owner, &shape->made), shape->node, "shape '%s'",
-                                  shape->name);
-    pls_release(&in.points);
-    pls_release(&in.parts);
+    {
+        status = pls_shape_make(shape->ops, scene->dimension, &in.input, owner, &shape->made);
+        status = pls_node_context(status, blamed(shape, &in.input), "%s", ""); // the message names the shape
+    }
+    release_input(&in);
     return status;
 }
 

@@ -209,13 +209,39 @@ static pls_status wrong_dimension(const pls_resolver *r, const pls_node *name, c
     return pls_node_fail(name, hint, "%s: a %s cannot be used in %dD", label, name->text, dimension);
 }
 
+/// The kind of a shape comes first, what stands beside it after. Fails unless there is one kind.
+static pls_status split_shape(pls_resolver *r, pls_node *node, const char *label)
+{
+    pls_node sorted = *node;
+    size_t kinds = 0, count;
+    const pls_key *beside = pls_schema_keys("any_shape", &count);
+    sorted.count = 0;
+    for (int late = 0; late < 2; ++late)
+        for (size_t k = 0; node->kind == PLS_NODE_MAP && k < node->count; ++k)
+        {
+            bool known = false;
+            for (size_t j = 0; j < count; ++j) known = known || strcmp(node->key[k]->text, beside[j].name) == 0;
+            kinds += !known && !late;
+            if (known == late) PLS_TRY(pls_node_append(&r->scene->arena, &sorted, node->key[k], node->child[k]));
+        }
+    if (kinds != 1)
+        return pls_node_fail(node, "for example  {sphere: {radius: 0.1}}",
+                             "%s must be a map with one kind of shape, and beside it at most 'density_factor'", label);
+    for (size_t j = 0; j < count; ++j)
+    {
+        pls_node *value = pls_node_get(&sorted, beside[j].name);
+        if (value) PLS_TRY(pls_resolve_key(r, &beside[j], value, label));
+    }
+    *node = sorted;
+    return PLS_OK;
+}
+
 static pls_status resolve_shape(pls_resolver *r, const pls_node *name, pls_node *node)
 {
     const char *label;
     PLS_TRY(pls_resolve_name(name, "shape"));
     PLS_TRY(pls_arena_print(&r->scene->arena, &label, "shape '%s'", name->text));
-    if (node->kind != PLS_NODE_MAP || node->count != 1)
-        return pls_node_fail(node, "for example  {sphere: {radius: 0.1}}", "%s must be a map with one key, the kind of shape", label);
+    PLS_TRY(split_shape(r, node, label));
     const void *found;
     PLS_TRY(find_ops(&r->scene->shape_ops, node->key[0], &found));
     const pls_shape_ops *ops = found;

@@ -41,6 +41,9 @@ static const pls_section sections[] = {
     {"motion", "bodies[k].motion",
      "Prescribed motion. Axes not mentioned stand still; `free` in place of a number leaves that axis to the forces."},
     {"turn", "... orientation", "A rotation about an axis."},
+    {"any_shape", "shapes.NAME",
+     "What may stand beside the kind of a shape that has mass: `{sphere: {radius: 0.1}, density_factor: \"1 + 5*z\"}`. A compound may have "
+     "it, its parts may not."},
     {"part", "shapes.NAME.compound.parts[k]",
      "A shape of the scene as a part of a compound. Shapes that are only parts stand under `shapes` like all others."},
     {"contact", "contact[k]",
@@ -121,6 +124,10 @@ static const pls_key keys[] = {
     {"domain", "upper", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m", NULL, ANY, "upper corner of the box at t = 0"},
     {"domain", "stretch_rate", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "1/s", "0", ANY,
      "relative rate of change of each edge: L(t) = L(0) (1 + rate t)"},
+
+    {"any_shape", "density_factor", PLS_KEY_NUMBER, OPEN, PLS_USES_PLACE, NULL, NULL, "", NULL, POSITIVE,
+     "times the material's density: a field over x, y, z of the shape's own frame [m], before the body's scale. Mass, centre of mass (the "
+     "body's position), inertia and principal axes follow by quadrature"},
 
     {"body", "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY, "name of the entry and its group; body_1, body_2, ... by default"},
     {"body", "shape", PLS_KEY_MIX, REQUIRED | OPEN, 0, NULL, NULL, "", NULL, POSITIVE,
@@ -206,7 +213,7 @@ static const pls_key keys[] = {
      "grain's own surface (P1 eq. 15b, LAMMPS)"},
     {"contact", "solver", PLS_KEY_WORD, 0, 0, "depth|admm", NULL, "", "depth", ANY,
      "overlap of shapes that are not spheres: the penetration depth, or P1 eq. 14 by ADMM (not conservative where edges and corners "
-     "overlap)"},
+     "overlap; only for convex shapes and compounds of such, others are refused)"},
     {"contact", "faces", PLS_KEY_WORD, 0, 0, "auto|point|manifold|volume", NULL, "", "auto", ANY,
      "where faces lie on each other: the force acts at the deepest point (quickest; faces rattle), follows a smooth maximum of the "
      "overlap's "

@@ -199,7 +199,10 @@ static pls_status json_parameters(pls_text *out, const pls_parameter *table, pls
 
 static pls_status json_shape(pls_text *out)
 {
-    PLS_TRY(pls_text_print(out, ",\n    \"shape\": {\"type\": \"object\", \"minProperties\": 1, \"maxProperties\": 1, \"properties\": {"));
+    size_t beside;
+    const pls_key *keys = pls_schema_keys("any_shape", &beside);
+    PLS_TRY(pls_text_print(out, ",\n    \"shape\": {\"type\": \"object\", \"minProperties\": 1, \"maxProperties\": %zu, \"properties\": {",
+                           1 + beside));
     for (const pls_shape_ops *const *ops = pls_builtin_shapes(); *ops; ++ops)
     {
         PLS_TRY(pls_text_print(out, "%s\n      ", ops == pls_builtin_shapes() ? "" : ","));
@@ -210,6 +213,7 @@ static pls_status json_shape(pls_text *out)
         PLS_TRY(json_parameters(out, (*ops)->parameters, PLS_OF_SHAPE));
         PLS_TRY(pls_text_print(out, "}"));
     }
+    for (size_t k = 0; k < beside; ++k) PLS_TRY(json_key(out, &keys[k], false));
     return pls_text_print(out, "}}");
 }
 

@@ -8,8 +8,16 @@ extern const pls_shape_ops pls_sphere_shape, pls_plane_shape, pls_box_shape, pls
     pls_superquadric_shape, pls_polyhedron_shape, pls_prism_shape, pls_compound_shape, pls_mesh_shape;
 extern const pls_shape_ops pls_disc_shape, pls_half_plane_shape, pls_ellipse_shape, pls_polygon_shape, pls_polyline_shape; // 2D
 
-/// A sphere or disc, whose contacts are found by centre and radius alone.
-static inline bool pls_shape_is_ball(const pls_shape *shape) { return shape->ops->sdf == pls_sphere_shape.sdf; }
+/// A sphere or disc, whose contacts are found by centre and radius alone: its centre of mass is its middle.
+static inline bool pls_shape_is_ball(const pls_shape *shape) { return shape->ops->sdf == pls_sphere_shape.sdf && !shape->uneven; }
+/// The shape, or the first of its parts, that is not convex; null if there is none.
+static inline const pls_shape *pls_shape_concave_part(const pls_shape *shape)
+{
+    if (shape->part_count == 0) return shape->convex ? NULL : shape;
+    for (size_t k = 0; k < shape->part_count; ++k)
+        if (!shape->part[k].shape->convex) return shape->part[k].shape;
+    return NULL;
+}
 /// A half-space or half-plane.
 static inline bool pls_shape_is_plane(const pls_shape *shape) { return shape->ops->sdf == pls_plane_shape.sdf; }
 

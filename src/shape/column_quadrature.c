@@ -127,12 +127,21 @@ static crossings find_crossings(const pls_column_frame *frame, const double x[3]
 
 // ---- columns ------------------------------------------------------------------------------------------------------------------------------------------------
 
+double pls_column_density(const pls_column_frame *f, pls_vec3 X)
+{
+    const pls_shape *shape = f->shape;
+    const double own = shape->ops->density ? shape->ops->density(shape, X) : 1.0;
+    const double value = shape->density ? own * shape->density->at(shape->density->context, X) : own;
+    if (value > 0.0 && isfinite(value)) return value;
+    if (!f->uneven->found) *f->uneven = (pls_density_fault){true, X, value};
+    return 1.0;
+}
+
 /// Integrals of density, times z, times z^2, from a to b.
 static void piece(const block *c, double x[3], double a, double b, double line[3])
 {
-    const pls_shape *shape = c->frame->shape;
     double middle = 0.5 * (a + b), half = 0.5 * (b - a);
-    if (!shape->ops->density)
+    if (!c->frame->uneven)
     {
         line[0] += 2.0 * half;
         line[1] += 2.0 * half * middle;
@@ -145,7 +154,7 @@ static void piece(const block *c, double x[3], double a, double b, double line[3
         x[c->up] = z;
         pls_vec3 X = c->frame->origin;
         for (int a3 = 0; a3 < 3; ++a3) X = pls_add(X, pls_scale(c->frame->axis[a3], x[a3]));
-        double mass = shape->ops->density(shape, X) * pls_gauss_weight[k / 2] * half;
+        double mass = pls_column_density(c->frame, X) * pls_gauss_weight[k / 2] * half;
         line[0] += mass, line[1] += mass * z, line[2] += mass * z * z;
     }
 }

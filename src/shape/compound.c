@@ -39,7 +39,7 @@ static pls_status check_part(const pls_shape_part *part, size_t k, int dimension
     if (shape->ops->unbounded || shape->ops->wall)
         return pls_fail(PLS_INVALID_ARGUMENT, "part %zu of a compound is a %s, which has no mass; take shapes that grains may have", k + 1,
                         shape->ops->name);
-    if (shape->ops->density)
+    if (shape->uneven)
         return pls_fail(
             PLS_INVALID_ARGUMENT,
             "part %zu of a compound has a density of its own, which varies in space; the parts of a compound are all of its material",

@@ -98,7 +98,7 @@ static bool is_settled(const tree *t, cell *c)
     if (c->face != NO_FACE) return false;
     double phi = pls_column_phi(&t->frame, c->centre), diagonal = sqrt((double)shape->dimension) * c->half;
     memset(c->sum, 0, sizeof c->sum);
-    if (fabs(phi) <= diagonal || (phi < 0.0 && shape->ops->density)) return false;
+    if (fabs(phi) <= diagonal || (phi < 0.0 && t->frame.uneven)) return false;
     if (phi < 0.0) full_cell(c, shape->dimension, c->sum);
     return true;
 }
@@ -150,7 +150,7 @@ static void measure(const tree *t, cell *c)
     }
     pls_column_moments(&t->frame, c->centre, c->half, c->sum, again);
     c->error = difference(t, c->sum, again, c->centre);
-    bool empty = c->sum[0] == 0.0, full = !t->frame.shape->ops->density && fabs(c->sum[0] - volume) <= 1e-12 * volume;
+    bool empty = c->sum[0] == 0.0, full = !t->frame.uneven && fabs(c->sum[0] - volume) <= 1e-12 * volume;
     if (!empty && !full) return;
     const double missed[PLS_MOMENTS] = {overlooked(t, c) * volume / c->half}, nothing[PLS_MOMENTS] = {0.0};
     c->error += difference(t, missed, nothing, c->centre);
@@ -240,7 +240,7 @@ static bool is_star(const tree *t)
 {
     const pls_shape *shape = t->frame.shape;
     const double origin[3] = {0.0, 0.0, 0.0};
-    if (shape->dimension == 2 || !shape->convex || shape->ops->density || !(shape->ops->smooth || shape->margin > 0.0)) return false;
+    if (shape->dimension == 2 || !shape->convex || t->frame.uneven || !(shape->ops->smooth || shape->margin > 0.0)) return false;
     return pls_column_phi(&t->frame, origin) < -0.01 * t->frame.reach;
 }
 
@@ -259,7 +259,8 @@ static double refine(tree *t, double sum[PLS_MOMENTS])
     else
         plant(t, &all, FIRST);
     double error = total(t, sum);
-    for (size_t turn = 1; t->count > 0 && t->count + 8 < MOST_CELLS && error > target; ++turn)
+    const pls_density_fault *fault = t->frame.uneven; // after which nothing counts any more
+    for (size_t turn = 1; !(fault && fault->found) && t->count > 0 && t->count + 8 < MOST_CELLS && error > target; ++turn)
     {
         error += divide_worst(t);
         if (turn % 64 == 0 || error <= target) error = total(t, sum); // anew: differences leave round-off
@@ -295,21 +296,52 @@ static void tell(const tree *t, const double m[PLS_MOMENTS], pls_mass_properties
     out->inertia[5] = -own[1][2];
 }
 
-pls_status pls_mass_by_quadrature(const pls_shape *shape, pls_vec3 origin, double reach, pls_mass_properties *out)
+/// A density that varies evenly is least at an end, where the points of the quadrature come close but do not lie.
+static void try_ends(const pls_column_frame *frame)
+{
+    for (int k = 0; k < 27; ++k)
+    {
+        const pls_vec3 e = pls_vec(k % 3 - 1, k / 3 % 3 - 1, frame->shape->dimension == 3 ? k / 9 - 1 : 0);
+        if (pls_dot(e, e) > 0.0) pls_column_density(frame, pls_shape_support(frame->shape, pls_unit(e)));
+    }
+}
+
+static pls_status no_density(const pls_density_fault *fault)
+{
+    return pls_fail(PLS_INVALID_ARGUMENT,
+                    "the density is %g times the material's at (%g, %g, %g) m; it must be positive and finite all over the shape",
+                    fault->value, fault->at.x, fault->at.y, fault->at.z);
+}
+
+static pls_status by_quadrature(const pls_shape *shape, pls_density_fault *uneven, pls_vec3 origin, double reach, pls_mass_properties *out)
 {
     // About (1, 1, 1) by 60 degrees all axes would have components of 1/3 and 2/3 along all others; a little off, so that nothing coincides.
     const pls_quat turn =
         shape->dimension == 2 ? (pls_quat){cos(0.29), 0.0, 0.0, sin(0.29)} : pls_quat_unit((pls_quat){0.866, 0.263, 0.291, 0.312});
-    tree t = {.frame = {.shape = shape, .origin = origin, .reach = 1.001 * reach}};
+    tree t = {.frame = {.shape = shape, .origin = origin, .reach = 1.001 * reach, .uneven = uneven}};
     double m[PLS_MOMENTS];
     *out = (pls_mass_properties){0};
     t.frame.axis[0] = pls_rotate(turn, pls_vec(1.0, 0.0, 0.0));
     t.frame.axis[1] = pls_rotate(turn, pls_vec(0.0, 1.0, 0.0));
     t.frame.axis[2] = pls_rotate(turn, pls_vec(0.0, 0.0, 1.0));
+    if (uneven) try_ends(&t.frame);
+    if (uneven && uneven->found) return no_density(uneven);
     PLS_TRY(pls_allocate(&t.heap, MOST_CELLS, sizeof *t.heap, "cells of the mass quadrature"));
     out->error = refine(&t, m);
     pls_release(&t.heap);
+    if (uneven && uneven->found) return no_density(uneven);
     if (!(m[0] > 0.0)) return pls_fail(PLS_INVALID_ARGUMENT, "the shape has no volume: its SDF is negative nowhere");
     tell(&t, m, out);
     return PLS_OK;
+}
+
+pls_status pls_mass_by_quadrature(const pls_shape *shape, pls_vec3 origin, double reach, pls_mass_properties *out)
+{
+    return by_quadrature(shape, NULL, origin, reach, out);
+}
+
+pls_status pls_uneven_mass_by_quadrature(const pls_shape *shape, pls_vec3 origin, double reach, pls_mass_properties *out)
+{
+    pls_density_fault fault = {.found = false};
+    return by_quadrature(shape, &fault, origin, reach, out);
 }

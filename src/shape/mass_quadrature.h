@@ -8,5 +8,7 @@
 /// rough, is meant as a bound of the relative errors of the volume, of the centre (relative to the radius of gyration) and of the inertia tensor (relative to its
 /// trace): true errors mostly are some ten times smaller. INVALID_ARGUMENT if the shape has no volume.
 pls_status pls_mass_by_quadrature(const pls_shape *shape, pls_vec3 origin, double reach, pls_mass_properties *out);
+/// The same with the shape's density, which is 1 above. INVALID_ARGUMENT tells where it is not positive and finite.
+pls_status pls_uneven_mass_by_quadrature(const pls_shape *shape, pls_vec3 origin, double reach, pls_mass_properties *out);
 
 #endif

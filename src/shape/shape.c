@@ -7,26 +7,23 @@
 #include <particls/shape.h>
 
 #include "base/alloc.h"
-#include "base/random.h"
 #include "math/principal_axes.h"
 #include "shape/mass_quadrature.h"
 #include "shape/part_tree.h"
+#include "shape/sdf_trial.h"
 #include "shape/surface_sample.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum {
-    TRIALS = 2000,        ///< pairs of points at which an SDF is tried
     SUPPORT_TURNS = 40,   ///< of the search for a support point
     SUPPORT_STRIDES = 60, ///< of each turn
     CLIMBS = 30           ///< of the search for the furthest point
 };
-static const double steepness = 1e-9;  ///< by which an SDF may be steeper than 1, for round-off
-static const double foot_error = 1e-3; ///< of the size: how far from the surface the foot of a point outside may lie
-static const double far_away = 20.0;   ///< sizes from which support points are sought
-static const double remote = 1e3;      ///< sizes from which shapes that are not convex are seen first
-static const double horizon = 1e6;     ///< sizes from where the distance tells the extent of a shape to within size / 2e6
+static const double far_away = 20.0; ///< sizes from which support points are sought
+static const double remote = 1e3;    ///< sizes from which shapes that are not convex are seen first
+static const double horizon = 1e6;   ///< sizes from where the distance tells the extent of a shape to within size / 2e6
 
 double pls_shape_sdf(const pls_shape *shape, pls_vec3 X) { return shape->ops->sdf(shape, X); }
 
@@ -92,39 +89,9 @@ pls_vec3 pls_shape_support(const pls_shape *shape, pls_vec3 n)
     return shape->margin > 0.0 ? pls_add(p, pls_scale(n, shape->margin)) : p;
 }
 
-// ---- size ---------------------------------------------------------------------------------------------------------------------------------------------------
+// ---- bounds --------------------------------------------------------------------------------------------------------------------------------------------------
 
 static const pls_vec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-
-/// How far the shape reaches, roughly, from its distances to far points: t - phi(t e) tends to its extent along e.
-static pls_status guess_size(pls_shape *shape, const char *name)
-{
-    const int count = 2 * shape->dimension;
-    double t = 1.0, size = 0.0;
-    double phi = shape->ops->sdf(shape, pls_vec(0.0, 0.0, 0.0));
-    if (isfinite(phi) && phi != 0.0) t = fabs(phi);
-    for (int k = 0; k < 200; ++k, t *= 4.0)
-    {
-        double reach = 0.0;
-        for (int a = 0; a < count; ++a)
-        {
-            phi = shape->ops->sdf(shape, pls_scale(axes[a], t));
-            if (!isfinite(phi))
-                return pls_fail(PLS_INVALID_ARGUMENT, "the SDF of %s is %g at (%g, %g, %g) m; it must be finite everywhere", name, phi,
-                                t * axes[a].x, t * axes[a].y, t * axes[a].z);
-            reach = fmax(reach, t - phi);
-        }
-        if (reach > 0.0 && reach < 0.1 * t && fabs(reach - size) < 0.05 * reach)
-        {
-            shape->size = reach;
-            return PLS_OK;
-        }
-        size = reach;
-        if (t > 1e30) break;
-    }
-    return pls_fail(PLS_INVALID_ARGUMENT,
-                    "%s has no end: %g m away its SDF still says that it is near. Bounded shapes only, and true distances", name, t);
-}
 
 /// How far the shape reaches along e. The distance of a far point t e is t - h(e) + s^2 / 2t or less, s < 2 size being how far beside the axis the furthest point lies.
 /// For convex shapes the support point is all; others may have several places that are about as high.
@@ -227,49 +194,6 @@ static double inner_radius_of(const pls_shape *shape)
     return shape->margin + fmax(0.0, 0.5 * least);
 }
 
-// ---- is it a distance? -------------------------------------------------------------------------------------------------------------------------------------
-
-static pls_vec3 random_point(const pls_shape *shape, pls_random *random, double margin)
-{
-    double u[3];
-    for (int a = 0; a < 3; ++a) u[a] = pls_random_uniform(random);
-    pls_vec3 side = pls_sub(shape->upper, shape->lower), middle = pls_scale(pls_add(shape->upper, shape->lower), 0.5);
-    double grow = 1.0 + margin;
-    return pls_vec(middle.x + (u[0] - 0.5) * side.x * grow, middle.y + (u[1] - 0.5) * side.y * grow,
-                   middle.z + (u[2] - 0.5) * side.z * grow);
-}
-
-/// An SDF may not be steeper than 1 anywhere, and its feet must lie on the surface.
-static pls_status try_sdf(const pls_shape *shape, const char *name)
-{
-    pls_random random = pls_random_stream(1, 0, PLS_FOR_USER);
-    for (int k = 0; k < TRIALS; ++k)
-    {
-        pls_vec3 a = random_point(shape, &random, 1.0), b = random_point(shape, &random, 1.0);
-        if (k & 1) b = pls_add(a, pls_scale(pls_sub(b, a), 1e-3)); // near by
-        double at_a = pls_shape_sdf(shape, a), at_b = pls_shape_sdf(shape, b), apart = pls_length(pls_sub(a, b));
-        if (!isfinite(at_a))
-            return pls_fail(PLS_INVALID_ARGUMENT, "the SDF of %s is %g at (%g, %g, %g) m; it must be finite everywhere", name, at_a, a.x,
-                            a.y, a.z);
-        if (fabs(at_a - at_b) > apart * (1.0 + steepness) + 1e-12 * shape->size)
-            return pls_fail(
-                PLS_INVALID_ARGUMENT,
-                "the SDF of %s is steeper than a distance can be: from (%g, %g, %g) m to (%g, %g, %g) m it changes from %.9g to %.9g m, "
-                "by %.6g times the way. Divide it by its steepest slope, or give a true distance",
-                name, a.x, a.y, a.z, b.x, b.y, b.z, at_a, at_b, fabs(at_a - at_b) / apart);
-        if (at_a <= 0.0) continue;
-        pls_vec3 foot = pls_sub(a, pls_scale(pls_shape_gradient(shape, a), at_a));
-        double left = pls_shape_sdf(shape, foot);
-        if (fabs(left) > foot_error * (shape->size + at_a))
-            return pls_fail(
-                PLS_INVALID_ARGUMENT,
-                "the SDF of %s is no true distance outside: at (%g, %g, %g) m it says %.6g m, but so far against its gradient, at "
-                "(%g, %g, %g) m, it still says %.3g m",
-                name, a.x, a.y, a.z, at_a, foot.x, foot.y, foot.z, left);
-    }
-    return PLS_OK;
-}
-
 // ---- parts ----------------------------------------------------------------------------------------------------------------------------------------------------
 
 /// The list that the shape's operations give, in the order of the tree over it.
@@ -307,6 +231,12 @@ size_t pls_shape_parts_near(const pls_shape *shape, pls_vec3 X, double radius, u
 
 // ---- making one -----------------------------------------------------------------------------------------------------------------------------------------
 
+/// Put the name in front of what a shape's own functions say, who do not know it.
+static pls_status named(pls_status status, const char *name)
+{
+    return status == PLS_OUT_OF_MEMORY ? status : pls_fail_context(status, "%s: ", name);
+}
+
 /// Principal axes and moments of the inertia tensor.
 static void find_principal(pls_shape *shape)
 {
@@ -328,16 +258,41 @@ static void find_principal(pls_shape *shape)
     shape->moments = pls_vec(value[0], value[1], value[2]);
 }
 
+/// As if the density were 1: exactly, or by quadrature.
+static pls_status measure_even_mass(const pls_shape *shape, const char *name, const pls_sdf_least *least, pls_mass_properties *out)
+{
+    if (shape->ops->mass_properties) return named(shape->ops->mass_properties(shape, out), name);
+    const pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
+    const pls_status status = pls_mass_by_quadrature(shape, middle, pls_shape_reach(shape, middle), out);
+    if (status == PLS_INVALID_ARGUMENT && !(least->phi < 0.0)) return pls_sdf_no_inside(name, least);
+    return named(status, name);
+}
+
+/// A density that varies is for the quadrature, unless the shape's own exact mass is by it.
+static pls_status measure_uneven_mass(pls_shape *shape, const char *name)
+{
+    const bool exact = shape->ops->mass_properties && shape->ops->density && !shape->density;
+    const pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
+    const double reach = pls_shape_reach(shape, middle) * (1.0 + 1e-9);
+    if (exact)
+    {
+        pls_mass_properties even;
+        PLS_TRY(named(pls_mass_by_quadrature(shape, middle, reach, &even), name));
+        shape->volume = even.volume;
+        return PLS_OK;
+    }
+    return named(pls_uneven_mass_by_quadrature(shape, middle, reach, &shape->mass), name);
+}
+
 /// Volume, centre of mass, principal frame; the bounding sphere is about that centre.
-static pls_status measure_mass(pls_shape *shape, const char *name)
+static pls_status measure_mass(pls_shape *shape, const char *name, const pls_sdf_least *least)
 {
     const pls_shape_ops *ops = shape->ops;
-    pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
-    if (ops->mass_properties)
-        PLS_TRY(ops->mass_properties(shape, &shape->mass));
-    else
-        PLS_TRY(pls_mass_by_quadrature(shape, middle, pls_shape_reach(shape, middle), &shape->mass));
-    shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : pls_shape_reach(shape, shape->mass.centre);
+    PLS_TRY(measure_even_mass(shape, name, least, &shape->mass));
+    shape->volume = shape->mass.volume;
+    if (shape->uneven) PLS_TRY(measure_uneven_mass(shape, name));
+    const bool moved = shape->uneven || !ops->bounding_radius; // the shape's own sphere is about the centre of even mass
+    shape->radius = moved ? pls_shape_reach(shape, shape->mass.centre) : ops->bounding_radius(shape);
     if (!(shape->radius > 0.0) || !isfinite(shape->radius) || !(shape->mass.volume > 0.0) || !isfinite(shape->mass.volume))
         return pls_fail(PLS_INVALID_ARGUMENT, "%s has radius %g m and volume %g; both must be positive and finite", name, shape->radius,
                         shape->mass.volume);
@@ -355,15 +310,18 @@ static pls_status measure(pls_shape *shape, const char *name)
     shape->convex = ops->convex || (ops->is_convex && ops->is_convex(shape));
     shape->margin = ops->margin ? ops->margin(shape) : 0.0;
     shape->polytope = ops->polytope ? ops->polytope(shape) : NULL;
+    if ((ops->unbounded || ops->wall) && shape->density)
+        return pls_fail(PLS_INVALID_ARGUMENT, "%s: a %s has no mass, and so no density", name, ops->name);
     if (ops->unbounded) return PLS_OK;
     if (ops->parts) PLS_TRY(take_parts(shape));
-    PLS_TRY(guess_size(shape, name));
+    pls_sdf_least least;
+    PLS_TRY(pls_sdf_guess_size(shape, name));
     find_bounds(shape);
-    PLS_TRY(try_sdf(shape, name));
+    PLS_TRY(pls_sdf_try(shape, name, &least));
     shape->inner_radius = inner_radius_of(shape);
     if (!ops->wall)
     {
-        PLS_TRY(measure_mass(shape, name));
+        PLS_TRY(measure_mass(shape, name, &least));
         const bool values_alone = shape->convex && !ops->support && !shape->polytope;
         return shape->convex && !values_alone ? PLS_OK : pls_shape_need_sample(shape);
     }
@@ -432,8 +390,12 @@ static pls_status fill(shape_with_values *block, const pls_shape_input *input, c
     pls_shape_input mine = *input;
     mine.values = shape->values;
     mine.value_count = (size_t)pls_parameter_values(ops->parameters);
-    if (ops->prepare) PLS_TRY(ops->prepare(&mine, shape->dimension, &shape->data));
-    return measure(shape, name);
+    if (ops->prepare) PLS_TRY(named(ops->prepare(&mine, shape->dimension, &shape->data), name));
+    shape->density = input->density;
+    shape->uneven = ops->density || input->density;
+    const pls_status status = measure(shape, name);
+    shape->density = NULL;
+    return status;
 }
 
 pls_status pls_shape_make(const pls_shape_ops *ops, int dimension, const pls_shape_input *input, const char *name, pls_shape **out)

@@ -10,11 +10,54 @@ complain() {
 }
 
 read -r -a flags <<<"$("$PARTICLS" plugin --cflags)"
+
+# A program that was copied away from its headers says where it looked; one that finds those of another version does not take them.
+here=$(pwd -P)
+mkdir -p copy/bin 'with space/bin'
+cp "$PARTICLS" copy/bin/particls
+library=$(dirname "$(ldd "$PARTICLS" | sed -n 's/.*=> \(.*libparticls[^ ]*\).*/\1/p')")
+refuses() { # <program> <word>...: it fails, prints no flags, and says all of the words
+    local program=$1 word
+    shift
+    if LD_LIBRARY_PATH=$library "$program" plugin --cflags >flags.txt 2>said.txt; then complain "$program prints flags: $(cat flags.txt)"; fi
+    [ ! -s flags.txt ] || complain "$program prints flags and fails"
+    for word in "$@"; do grep -qF -- "$word" said.txt || complain "'$word' is not in: $(cat said.txt)"; done
+}
+refuses copy/bin/particls "$here/copy/bin" "/copy/bin/../include: there is no particls/types.h"
+mkdir -p copy/include/particls
+echo '#define PLS_API_VERSION 1' >copy/include/particls/types.h
+refuses copy/bin/particls "$here/copy/include: headers of API 1, the program has "
+cp copy/bin/particls 'with space/bin/particls'
+cp -r "$PARTICLS_SOURCE/include" 'with space/include'
+refuses 'with space/bin/particls' "-I'$here/with space/include'"
+rm -r copy/include
+cp -r "$PARTICLS_SOURCE/include" copy/include
+[[ "$(LD_LIBRARY_PATH=$library copy/bin/particls plugin --cflags)" == *" -I$here/copy/include" ]] || complain "a program moved with its headers does not find them"
+ln -s "$PARTICLS" linked
+[ "$(./linked plugin --cflags)" = "$("$PARTICLS" plugin --cflags)" ] || complain "a link to the program does not find the headers"
 warnings=(-Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Werror)
 for source in template/my_plugin cohesion/linear_cohesion torus/torus drag/stokes_drag temperature/granular_temperature; do
     "$CC" "${flags[@]}" "${warnings[@]}" "$PARTICLS_SOURCE/plugins/$source.c" -o "${source#*/}.so" || complain "plugins/$source.c does not compile"
     "$PARTICLS" info "${source#*/}.so" >info.txt || complain "the plugin of plugins/$source.c cannot be described"
     grep -q '^### ' info.txt || complain "the plugin of plugins/$source.c brings nothing"
+done
+
+# A shape whose SDF lies: the scene's line, the shape's name once, the reason with the point and the value.
+sed -e 's/- shape->values\[TUBE\];/+ shape->values[TUBE];/' "$PARTICLS_SOURCE/plugins/torus/torus.c" >lie.c
+"$CC" "${flags[@]}" lie.c -o lie.so || complain "the SDF that lies does not compile"
+cat >lie.yaml <<'YAML'
+particls: 1
+plugins: [./lie.so]
+materials: {grain: {density: 2000}}
+shapes:
+  ring: {torus: {ring_radius: 0.3, tube_radius: 0.1}}
+bodies: [{shape: ring, material: grain, position: [0, 0, 0]}]
+time: {end: 1, dt: 1.0e-3}
+YAML
+"$PARTICLS" check lie.yaml >said.txt 2>&1 && complain "an SDF that is nowhere negative is taken"
+for line in "^particls: lie.yaml:5:9: the SDF of shape 'ring' is nowhere negative: the least value found is 0.1 m, at (.*) m; inside it must be negative$" \
+    '^    5 |   ring: {torus: {ring_radius: 0.3, tube_radius: 0.1}}$' '^      |         ^$'; do
+    grep -q -- "$line" said.txt || complain "of an SDF that lies is said: $(cat said.txt)"
 done
 
 # A loose heap that falls on a floor and slides: all that a law can do.

@@ -48,6 +48,7 @@ It asks nothing of a shape but its signed distance, through nearest points and t
 * **So a force along xi does not conserve energy**, at any time step: there is no potential of which it is the gradient. A frictionless, undamped collision changes the kinetic energy by $box_box_median %
   box on box (median), $polyhedron_polyhedron_median % polyhedron on polyhedron, $rectangle_rectangle_median % in 2D rectangle on rectangle. The depth is the gradient of its own potential: pushing one grain along
   the normal by a small way changes the depth by just that way, and a small turn by what the torque at the contact's point says. It keeps energy to $box_box_depth_median (box on box, median), which is the second-order error of the time step.
+* \`admm\` is for convex shapes and compounds of such: a scene in which others might touch under it is refused.
 * Use \`admm\` to repeat P1's simulations, and for smooth shapes known by nothing but a proximal map. With enough damping its errors of energy may not matter; the error of the direction does.
 
 ## Depth and direction

@@ -365,6 +365,71 @@ static void shapes_survive_allocation_failures(void **state)
     failing_allocator_remove();
 }
 
+// ---- densities ------------------------------------------------------------------------------------------------------------------------------------------------
+
+/// A ball with its centre of mass c = 0.01 m below its middle, on a floor without friction: N = m g lifts it back, so that it rocks with w^2 = g c / (I / m) and
+/// I / m = 2/5 R^2 - c^2, but for amplitude^2 / 16. After a quarter of the period it stands upright.
+static void a_ball_that_is_heavier_below_rocks(void **state)
+{
+    (void)state;
+    const double R = 0.1, c = 0.01, g = 9.81, tilt = 0.05, w = sqrt(g * c / (0.4 * R * R - c * c)), quarter = 0.5 * M_PI / w;
+    char text[1024];
+    snprintf(text, sizeof text,
+             "particls: 1\nvars: {a: 0.01}\nmaterials: {grain: {density: 1000}}\n"
+             "shapes:\n  ball: {density_factor: \"1 - 5*a/0.1^2*z\", sphere: {radius: 0.1}}\n  wall: {plane: {}}\n"
+             "bodies:\n  - {name: ball, shape: ball, material: grain, position: [0, 0, %.17g], orientation: {axis: [1, 0, 0], angle: %g}}\n"
+             "  - {name: floor, shape: wall, material: grain, position: [0, 0, 0], normal: [0, 0, 1]}\n"
+             "forces: [{gravity: [0, 0, -9.81]}]\n"
+             "contact: [{between: all, law: elastic, kn: 1.0e+6}]\ntime: {end: 1, dt: 1.0e-4}\n",
+             R - c * cos(tilt) - 4.0 / 3.0 * M_PI * 1000.0 * R * R * R * g / 1e6, tilt);
+    pls_scene *scene = must_load(text);
+    pls_world *world = must_build(scene);
+    assert_near(body_value(world, "mass", 0, 0), 4.0 / 3.0 * M_PI * 1000.0 * R * R * R, 1e-5);
+    assert_int_equal(pls_world_prepare(world), PLS_OK);
+    assert_near(2.0 * asin(body_value(world, "orientation", 0, 1)), tilt, 1e-6);
+    double before = tilt, angle = tilt, time = 0.0;
+    while (angle > 0.0 && time < 1.0)
+    {
+        assert_int_equal(pls_step(world), PLS_OK);
+        before = angle, angle = 2.0 * asin(body_value(world, "orientation", 0, 1)), time += 1e-4;
+    }
+    time -= 1e-4 * angle / (angle - before);
+    assert_near(time / quarter, 1.0, 1e-3);
+    pls_world_destroy(world);
+    pls_scene_free(scene);
+}
+
+/// The field is part of the scene: it stands in what is written of it, loads to the same, and another field is another scene.
+static void densities_are_part_of_the_scene(void **state)
+{
+    (void)state;
+    static const char text[] =
+        HEAD "vars: {a: 3}\nshapes: {ball: {sphere: {radius: 0.1}, density_factor: \"1 + a*z\"}, even: {sphere: {radius: 0.1}}}\n"
+             "bodies:\n  - {shape: ball, material: grain, position: [0, 0, 0]}\n" TAIL;
+    pls_scene *scene = must_load(text), *again = NULL;
+    const uint64_t hash = pls_scene_hash(scene);
+    char *used = NULL;
+    assert_int_equal(pls_scene_used_text(scene, &used), PLS_OK);
+    assert_non_null(strstr(used, "ball: {sphere: {radius: 0.1}, density_factor: \"1 + a*z\"}"));
+    assert_int_equal(pls_write_file("density.yaml", used, strlen(used)), PLS_OK);
+    pls_scene_free_text(used);
+    assert_near(shape_of(scene, "ball")->mass.centre.z, 3.0 * 0.01 / 5.0, 1e-7);
+    if (pls_scene_load("density.yaml", NULL, 0, &again) != PLS_OK) fail_msg("%s", pls_last_message());
+    assert_true(pls_scene_hash(again) == hash);
+    assert_memory_equal(&shape_of(again, "ball")->mass, &shape_of(scene, "ball")->mass, sizeof(pls_mass_properties));
+    pls_scene_free(again);
+    pls_scene_free(scene);
+    const char *sets[] = {"shapes.ball.density_factor=1 + 4*z", "shapes.even.density_factor=1 + 4*z"};
+    for (int k = 0; k < 2; ++k)
+    {
+        if (load_text(text, sets[k], &again) != PLS_OK) fail_msg("%s", pls_last_message());
+        assert_true(pls_scene_hash(again) != hash);
+        assert_near(shape_of(again, k ? "even" : "ball")->mass.centre.z, 4.0 * 0.01 / 5.0, 1e-7);
+        pls_scene_free(again);
+    }
+    assert_int_equal(pls_memory_in_use(), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -377,6 +442,8 @@ int main(void)
         cmocka_unit_test(bodies_have_the_mass_and_the_frame_of_their_shape),
         cmocka_unit_test(bodies_of_a_mix_have_the_mass_of_their_own_shape),
         cmocka_unit_test(shapes_survive_allocation_failures),
+        cmocka_unit_test(a_ball_that_is_heavier_below_rocks),
+        cmocka_unit_test(densities_are_part_of_the_scene),
     };
     return cmocka_run_group_tests_name("shapes in scenes", tests, NULL, NULL);
 }

@@ -361,18 +361,18 @@ static void parts_that_no_grain_has_are_refused(void **state)
     uneven.density = everywhere;
     pls_shape *dense = make(&uneven, 3, COUNTED(ball));
     pls_shape_part part = at(sphere, 0, 0, 0);
-    refuse(NULL, 0, "a compound needs at least one part");
+    refuse(NULL, 0, "x: a compound needs at least one part");
     part.scale = 0.0;
-    refuse(&part, 1, "part 1 of a compound has scale 0; it must be positive");
+    refuse(&part, 1, "x: part 1 of a compound has scale 0; it must be positive");
     part = at(sphere, NAN, 0, 0);
-    refuse(&part, 1, "part 1 of a compound has no finite position or no orientation of length one");
+    refuse(&part, 1, "x: part 1 of a compound has no finite position or no orientation of length one");
     part = at(disc, 0, 0, 0);
-    refuse(&part, 1, "part 1 of a compound is made for 2D, the compound for 3D");
+    refuse(&part, 1, "x: part 1 of a compound is made for 2D, the compound for 3D");
     part = at(plane, 0, 0, 0);
-    refuse(&part, 1, "part 1 of a compound is a plane, which has no mass; take shapes that grains may have");
+    refuse(&part, 1, "x: part 1 of a compound is a plane, which has no mass; take shapes that grains may have");
     part = at(dense, 0, 0, 0);
     refuse(&part, 1,
-           "part 1 of a compound has a density of its own, which varies in space; the parts of a compound are all of its material");
+           "x: part 1 of a compound has a density of its own, which varies in space; the parts of a compound are all of its material");
     pls_shape_free(sphere);
     pls_shape_free(disc);
     pls_shape_free(plane);

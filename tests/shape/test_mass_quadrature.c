@@ -21,7 +21,9 @@ static void expect_mass(const pls_shape *shape, const pls_mass_properties *known
     pls_mass_properties found;
     pls_vec3 middle = pls_scale(pls_add(shape->lower, shape->upper), 0.5);
     double reach = shape->radius + pls_length(pls_sub(middle, shape->mass.centre));
-    if (pls_mass_by_quadrature(shape, middle, reach, &found) != PLS_OK) fail_msg("%s", pls_last_message());
+    const pls_status status =
+        shape->uneven ? pls_uneven_mass_by_quadrature(shape, middle, reach, &found) : pls_mass_by_quadrature(shape, middle, reach, &found);
+    if (status != PLS_OK) fail_msg("%s", pls_last_message());
     double trace = known->inertia[0] + known->inertia[1] + known->inertia[2];
     double gyration = sqrt((shape->dimension == 2 ? trace : 0.5 * trace) / known->volume);
     double worst = fmax(fabs(found.volume / known->volume - 1.0), pls_length(pls_sub(found.centre, known->centre)) / gyration);

@@ -290,7 +290,7 @@ static void prisms_are_bases_times_heights(void **state)
     pls_shape_free(prism);
     const pls_shape_input flat = {VALUES(values), .points = base, .point_count = 2};
     assert_int_equal(pls_shape_make(&pls_prism_shape, 3, &flat, "x", &prism), PLS_INVALID_ARGUMENT);
-    assert_string_equal(pls_last_message(), "the base of a prism needs at least 3 points, not 2");
+    assert_string_equal(pls_last_message(), "x: the base of a prism needs at least 3 points, not 2");
 }
 
 static void assert_refused(size_t count, int dimension, const char *message)

@@ -153,69 +153,156 @@ static void a_density_that_varies(void **state)
 
 // ---- lies ---------------------------------------------------------------------------------------------------------------------------------------------------
 
-static void expect_refused(double (*sdf)(const pls_shape *, pls_vec3), bool convex, const char *because)
+/// Refused for this reason, and with the point and the value that show it.
+static void expect_refused(double (*sdf)(const pls_shape *, pls_vec3), bool convex, const char *because, const char *where)
 {
     pls_shape_ops ops = alone(sdf);
     ops.convex = convex;
     pls_shape *shape = NULL;
-    assert_int_equal(pls_shape_make(&ops, 3, &no_input, "shape 'mine'", &shape), PLS_INVALID_ARGUMENT);
+    if (pls_shape_make(&ops, 3, &no_input, "shape 'mine'", &shape) != PLS_INVALID_ARGUMENT) fail_msg("accepted: %s", because);
     assert_null(shape);
-    if (!strstr(pls_last_message(), because)) fail_msg("'%s' is not in: %s", because, pls_last_message());
+    const char *message = pls_last_message();
+    if (!strstr(message, because)) fail_msg("'%s' is not in: %s", because, message);
+    if (!strstr(message, where)) fail_msg("'%s' is not in: %s", where, message);
+    const char *name = strstr(message, "shape 'mine'");
+    assert_non_null(name);
+    if (strstr(name + 1, "shape 'mine'")) fail_msg("named twice: %s", message);
 }
 
-static double twice_too_steep(const pls_shape *shape, pls_vec3 X)
-{
-    (void)shape;
-    return pls_length(X) < 1.0 ? 2.0 * (pls_length(X) - 1.0) : pls_length(X) - 1.0;
-}
+#define LIE(name, value)                                   \
+    static double name(const pls_shape *shape, pls_vec3 X) \
+    {                                                      \
+        (void)shape;                                       \
+        const double r = pls_length(X);                    \
+        (void)r;                                           \
+        return value;                                      \
+    }
 
-static double squared(const pls_shape *shape, pls_vec3 X)
-{
-    (void)shape;
-    return pls_dot(X, X) - 1.0;
-}
+LIE(twice_too_steep, r < 1.0 ? 2.0 * (r - 1.0) : r - 1.0)
+LIE(twice_too_steep_all_over, 2.0 * (r - 0.1))
+LIE(squared, r *r - 1.0)
+LIE(squared_small, r *r - 0.01)
+LIE(stretched_ball, pls_length(pls_vec(X.x, X.y, 2.0 * X.z)) - 0.3)
 
-static double half_the_distance(const pls_shape *shape, pls_vec3 X)
-{
-    (void)shape;
-    return pls_length(X) < 3.0 ? 0.5 * (pls_length(X) - 1.0) : pls_length(X) - 2.0;
-}
-
-static double not_a_number(const pls_shape *shape, pls_vec3 X)
-{
-    (void)shape;
-    return X.x > 0.5 && X.x < 0.6 ? NAN : pls_length(X) - 1.0;
-}
-
-static double nothing(const pls_shape *shape, pls_vec3 X)
-{
-    (void)shape;
-    return pls_length(X) + 1.0;
-}
-
-static double slab(const pls_shape *shape, pls_vec3 X)
-{
-    (void)shape;
-    return fabs(X.z) - 0.5;
-}
-
-static void sdfs_that_lie(void **state)
+static void slopes_above_one(void **state)
 {
     (void)state;
-    expect_refused(twice_too_steep, true, "steeper than a distance can be");
-    expect_refused(squared, true, "mine");
-    expect_refused(half_the_distance, true, "no true distance outside");
-    expect_refused(not_a_number, true, "must be finite everywhere");
-    expect_refused(nothing, false, "mine");
-    expect_refused(slab, true, "has no end");
-    expect_refused(torus, true, "at its centre of mass, (");
+    static const char *const because = "is steeper than a distance can be: from (";
+    expect_refused(twice_too_steep, true, because, " times the way");
+    expect_refused(twice_too_steep_all_over, true, because, " m, by 2 times the way");
+    expect_refused(squared, true, because, " times the way");
+    expect_refused(squared_small, true, because, " times the way");
+    expect_refused(stretched_ball, true, because, " times the way");
+}
+
+LIE(half_the_distance, r < 3.0 ? 0.5 * (r - 1.0) : r - 2.0)
+LIE(half_the_distance_all_over, 0.5 * (r - 0.1))
+LIE(pseudo_ellipsoid, (pls_length(pls_vec(X.x / 0.1, X.y / 0.06, X.z / 0.03)) - 1.0) * 0.03)
+LIE(nearly_a_ball, (pls_length(pls_vec(X.x / 0.1, X.y / 0.1, X.z / 0.098)) - 1.0) * 0.098)
+LIE(constant, 0.3)
+
+static void slopes_below_one(void **state)
+{
+    (void)state;
+    static const char *const because = "is no true distance outside: at (", *const value = " m, it still says ";
+    expect_refused(half_the_distance, true, because, value);
+    expect_refused(half_the_distance_all_over, true, because, value);
+    expect_refused(pseudo_ellipsoid, true, because, value);
+    expect_refused(nearly_a_ball, true, because, value);
+    expect_refused(constant, false, because, " m it says 0.3 m");
+}
+
+LIE(not_a_number, X.x > 0.5 && X.x < 0.6 ? NAN : r - 1.0)
+LIE(not_a_number_at_the_origin, r - 0.1 + 0.0 / r)
+LIE(infinite_at_the_origin, r > 0.0 ? r - 0.1 : INFINITY)
+LIE(infinitely_deep, r > 0.0 ? r - 0.1 : -INFINITY)
+LIE(a_logarithm, 0.1 * log(r / 0.1))
+
+static void values_that_are_not_finite(void **state)
+{
+    (void)state;
+    static const char *const because = "must be finite everywhere";
+    expect_refused(not_a_number, true, because, "nan at (0.5");
+    expect_refused(not_a_number_at_the_origin, true, because, "nan at (0, 0, 0) m");
+    expect_refused(infinite_at_the_origin, true, because, "is inf at (0, 0, 0) m");
+    expect_refused(infinitely_deep, true, because, "is -inf at (0, 0, 0) m");
+    expect_refused(a_logarithm, true, because, "is -inf at (0, 0, 0) m");
+}
+
+LIE(ball_plus_a_length, r + 0.1)
+LIE(nothing, r + 1.0)
+LIE(shell_without_an_inside, fabs(r - 0.1))
+LIE(wrong_sign, 0.1 - r)
+LIE(wrong_sign_off_centre, 0.1 - pls_length(pls_sub(X, pls_vec(1.0, 2.0, 0.0))))
+LIE(ring_plus_a_length, hypot(hypot(X.x, X.y) - 0.3, X.z) + 0.1)
+LIE(inside_all_over, -0.2)
+
+static void signs(void **state)
+{
+    (void)state;
+    expect_refused(ball_plus_a_length, true, "is nowhere negative: the least value found is ", "is 0.1 m, at (0, 0, 0) m");
+    expect_refused(nothing, false, "is nowhere negative: the least value found is ", "is 1 m, at (0, 0, 0) m");
+    expect_refused(ring_plus_a_length, false, "is nowhere negative: the least value found is ", "is 0.1 m, at (");
+    expect_refused(shell_without_an_inside, false, "is nowhere negative: the least value found is ", " m, at (");
+    expect_refused(wrong_sign, true, "is negative in all directions far away, where it must be positive: ", " m at (");
+    expect_refused(wrong_sign_off_centre, true, "is negative in all directions far away, where it must be positive: ", " m at (");
+    expect_refused(inside_all_over, true, "is negative in all directions far away, where it must be positive: ", "-0.2 m at (");
+}
+
+LIE(slab, fabs(X.z) - 0.5)
+LIE(rod_without_ends, hypot(X.x, X.y) - 0.1)
+
+static void shapes_without_an_end(void **state)
+{
+    (void)state;
+    expect_refused(slab, true, "has no end: at (", " m its SDF is -0.5 m");
+    expect_refused(rod_without_ends, true, "has no end: at (", " m its SDF is -0.1 m");
+}
+
+LIE(step_inside, r - 0.1 + (X.x > 0.03 ? 0.02 : 0.0))
+LIE(step_of_a_part, pls_length(pls_sub(X, pls_vec(0.04, 0.03, 0.0))) < 0.03 ? r - 0.12 : r - 0.1)
+LIE(step_outside, r > 0.13 ? r - 0.1 : r > 0.12 ? r - 0.12 : r - 0.1)
+LIE(small_step, r - 0.1 + (X.y + X.z > 0.013 ? 1e-4 : 0.0))
+
+static void jumps(void **state)
+{
+    (void)state;
+    static const char *const because = "jumps: from (", *const value = " m apart, it changes from ";
+    expect_refused(step_inside, true, because, value);
+    expect_refused(step_of_a_part, true, because, value);
+    expect_refused(step_outside, false, because, value);
+    expect_refused(small_step, false, because, value);
+}
+
+LIE(two_balls, fmin(pls_length(pls_sub(X, pls_vec(0.1, 0.0, 0.0))), pls_length(pls_add(X, pls_vec(0.1, 0.0, 0.0)))) - 0.1)
+LIE(two_balls_that_overlap, fmin(pls_length(pls_sub(X, pls_vec(0.03, 0.0, 0.0))), pls_length(pls_add(X, pls_vec(0.03, 0.0, 0.0)))) - 0.1)
+LIE(fat_ring, hypot(hypot(X.x, X.y) - 0.1, X.z) - 0.0999)
+
+static void sets_that_are_not_convex(void **state)
+{
+    (void)state;
+    static const char *const because = "is said to be convex, but its SDF is not: ", *const value = " m half way between (";
+    expect_refused(two_balls, true, because, value);
+    expect_refused(two_balls_that_overlap, true, because, value);
+    expect_refused(fat_ring, true, because, value);
+    expect_refused(torus, true, because, value);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ball_off_the_centre),    cmocka_unit_test(a_box_that_is_turned),  cmocka_unit_test(a_torus),
-        cmocka_unit_test(the_highest_place_counts), cmocka_unit_test(a_density_that_varies), cmocka_unit_test(sdfs_that_lie),
+        cmocka_unit_test(a_ball_off_the_centre),
+        cmocka_unit_test(a_box_that_is_turned),
+        cmocka_unit_test(a_torus),
+        cmocka_unit_test(the_highest_place_counts),
+        cmocka_unit_test(a_density_that_varies),
+        cmocka_unit_test(slopes_above_one),
+        cmocka_unit_test(slopes_below_one),
+        cmocka_unit_test(values_that_are_not_finite),
+        cmocka_unit_test(signs),
+        cmocka_unit_test(shapes_without_an_end),
+        cmocka_unit_test(jumps),
+        cmocka_unit_test(sets_that_are_not_convex),
     };
     return cmocka_run_group_tests_name("sdf alone", tests, NULL, NULL);
 }

@@ -197,7 +197,7 @@ static void triangles_without_area_are_left_out(void **state)
     pls_shape *s = NULL;
     assert_int_equal(pls_write_file("flat.obj", flat, strlen(flat)), PLS_OK);
     assert_int_equal(make(&pls_mesh_shape, 3, &input, &s), PLS_INVALID_ARGUMENT);
-    assert_string_equal(pls_last_message(), "flat.obj: none of the 2 triangles has an area; save the mesh anew");
+    assert_string_equal(pls_last_message(), "shape 'x': flat.obj: none of the 2 triangles has an area; save the mesh anew");
     assert_int_equal(pls_write_file("both.obj", both, strlen(both)), PLS_OK);
     input.path = "both.obj";
     assert_int_equal(make(&pls_mesh_shape, 3, &input, &s), PLS_OK);
@@ -252,10 +252,11 @@ static void polylines_without_a_line_are_refused(void **state)
         pls_shape_input input;
         const char *message;
     } wrong[] = {
-        {{VALUES(open), .points = points, .point_count = 1}, "an open polyline needs at least 2 points, not 1"},
-        {{VALUES(closed), .points = points, .point_count = 2}, "a closed polyline needs at least 3 points, not 2"},
-        {{VALUES(half), .points = points, .point_count = 2}, "'closed' of a polyline must be 0 or 1, not 0.5"},
-        {{VALUES(open), .points = points, .point_count = 3}, "points 2 and 3 of a polyline are the same, (1, 0) m; remove one of them"},
+        {{VALUES(open), .points = points, .point_count = 1}, "shape 'x': an open polyline needs at least 2 points, not 1"},
+        {{VALUES(closed), .points = points, .point_count = 2}, "shape 'x': a closed polyline needs at least 3 points, not 2"},
+        {{VALUES(half), .points = points, .point_count = 2}, "shape 'x': 'closed' of a polyline must be 0 or 1, not 0.5"},
+        {{VALUES(open), .points = points, .point_count = 3},
+         "shape 'x': points 2 and 3 of a polyline are the same, (1, 0) m; remove one of them"},
     };
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k)
     {
@@ -297,14 +298,16 @@ static void only_convex_meshes_are_grains(void **state)
     assert_int_equal(make_grain(dented, 0.0, &s), PLS_INVALID_ARGUMENT);
     // The fans of the five whole faces are triangles 1 to 10; half way from a corner to the dent the mesh is 0.1 below the lid, at the middle of the triangle 0.2 / 3.
     snprintf(expected, sizeof expected,
-             "grain.obj: the mesh is not convex: triangle 11 lies 0.0666667 below the hull at (0.5, 0.166667, 0.933333)%s", what_else);
+             "shape 'x': grain.obj: the mesh is not convex: triangle 11 lies 0.0666667 below the hull at (0.5, 0.166667, 0.933333)%s",
+             what_else);
     assert_string_equal(pls_last_message(), expected);
     assert_int_equal(make_grain(dented, 1.0, &s), PLS_OK);
     assert_true(fabs(s->mass.volume - 1.0) < 1e-14); // the hull has no dent
     pls_shape_free(s);
 
     assert_int_equal(make_grain(box_without_lid, 0.0, &s), PLS_INVALID_ARGUMENT);
-    snprintf(expected, sizeof expected, "grain.obj: the mesh is not closed: its triangles cover 83.33 %% of its hull%s", what_else);
+    snprintf(expected, sizeof expected, "shape 'x': grain.obj: the mesh is not closed: its triangles cover 83.33 %% of its hull%s",
+             what_else);
     assert_string_equal(pls_last_message(), expected);
     assert_int_equal(make_grain(box_without_lid, 1.0, &s), PLS_OK);
     pls_shape_free(s);
@@ -317,7 +320,7 @@ static void only_convex_meshes_are_grains(void **state)
     pls_shape_free(s);
     const pls_shape_input nothing = {VALUES(values)};
     assert_int_equal(make(&pls_polyhedron_shape, 3, &nothing, &s), PLS_INVALID_ARGUMENT);
-    assert_string_equal(pls_last_message(), "a polyhedron needs 'points', or the 'path' of a mesh file (.obj, .stl, .ply)");
+    assert_string_equal(pls_last_message(), "shape 'x': a polyhedron needs 'points', or the 'path' of a mesh file (.obj, .stl, .ply)");
     assert_int_equal(pls_memory_in_use(), 0);
 }
 
