@@ -45,6 +45,7 @@ const verify_entry verify_cases[] = {
     {"box-on-slope", "A box on a slope slides from atan(mu) on", case_box_on_slope},
     {"rocking", "A box that rocks on its face: damped oscillator", case_rocking},
     {"lying", "Capsules and cylinders that lie along a line", case_lying},
+    {"pile", "A pile of grains of all kinds comes to rest", case_pile},
     {"spinning-on-face", "Spinning on a face: 2/3 mu m g R", case_spinning_on_face},
     {"column-stress", "Stress of a two-sphere column under a known force", case_column_stress},
     {"single-tangent", "Tangent operator of a single contact", case_single_contact_tangent},
