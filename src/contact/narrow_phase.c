@@ -559,7 +559,9 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     // Where the pair has neither faces nor lines to speak of the point stands.
     bool recorded = false;
     if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return false;
-    if (!pls_faces_touch(a, b, &d, options, record, &recorded, out) && !pls_cylinder_touch(a, b, &d, options, out))
+    if (pls_faces_touch(a, b, &d, options, record, &recorded, out) || pls_cylinder_touch(a, b, &d, options, out))
+        out->adds_up = options->faces == PLS_FACES_VOLUME;
+    else
         pls_lines_touch(a, b, &d, out);
     return recorded;
 }
@@ -568,6 +570,7 @@ bool pls_narrow_phase_again(const pls_posed *a, const pls_posed *b, const pls_na
                             pls_touch *out, pls_narrow_counts *counts)
 {
     if (!pls_faces_touch_again(a, b, options, record, out)) return false;
+    out->adds_up = options->faces == PLS_FACES_VOLUME;
     ++counts->queries;
     return true;
 }

@@ -31,6 +31,8 @@ typedef struct pls_touch
     double lever;     ///< radius at which all of an area's friction resists turning about the normal; 0 for a point and in 2D [m]
     double spread
         [6]; ///< second moments of the area (line) of touch about its middle, by the area (length): xx, yy, zz, xy, xz, yz; all 0: a point [m^2]
+    bool
+        adds_up; ///< flush parts of a body push with what lies over each of them, so that all act: a law of volumes; else one has to stand for the others
 } pls_touch;
 
 /// What a pair may keep beside its state, for speed alone: no answer depends on it but for `energy_delta`, which may be left out (faces.h), and it may be lost any time. All zero: nothing (overlap_record.h).

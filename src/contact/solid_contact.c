@@ -2,7 +2,8 @@
 //
 //     track      do the bounding volumes of the two parts overlap? If not, nothing is remembered of them
 //     touch      the narrow phase: overlap, normal, contact point
-//     shade      of several contacts of two bodies that push in one direction at one place (seams of compounds, edges within a mesh) only the deepest counts
+//     shade      of several contacts of two bodies that push in one direction at one place (seams of compounds, edges within a mesh) only the deepest counts, and none
+//                at points that belong to a deeper part, too
 //     frame      velocities at the contact point, the spring carried into the frame of now
 //     law        as for spheres, in batches
 //     store      force and torque into the candidate's own slot
@@ -30,6 +31,7 @@
 
 static const double shade_angle = 0.96592582628906831; ///< cosine of 15 degrees: normals that agree
 static const double shade_reach = 0.1; ///< of the smaller part's bounding radius: contact points nearer than this push at one place
+static const double shade_gap = 1e-4;  ///< of the smaller part's bounding radius: a point nearer to a part than this belongs to it
 
 // ---- poses --------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -161,8 +163,8 @@ static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t
     touch->depth = INFINITY;
 }
 
-/// Is the contact of candidate c one that the deeper contact of d stands for?
-static bool shades(const pls_solid_list *list, size_t d, size_t c)
+/// Do the contacts of d and c push in one direction at one place?
+static bool at_one_place(const pls_solid_list *list, size_t d, size_t c)
 {
     const pls_touch *deeper = &list->touch[d], *t = &list->touch[c];
     if (!(pls_dot(deeper->normal, t->normal) > shade_angle)) return false;
@@ -173,20 +175,42 @@ static bool shades(const pls_solid_list *list, size_t d, size_t c)
     return pls_dot(apart, apart) < reach * reach;
 }
 
-/// Which of the candidates first .. last, all of one pair of bodies, act: `next` gets their new PLS_SOLID_ state. The volume law adds up over parts, so nothing is shaded there.
+/// Do the points at which the parts of c touch belong to the parts of d, too? A ball that rolls over a floor of pieces is near to the edges of those beside it, but an edge within a
+/// floor is none: it would push backwards.
+static bool has_points_of(const pls_solid_list *list, const pls_contact_input *in, size_t d, size_t c)
+{
+    const pls_touch *t = &list->touch[c];
+    if (!pls_touch_is_point(t)) return false;
+    parts own, other;
+    pose_parts(list, in, c, &own), pose_parts(list, in, d, &other);
+    const bool same_a = list->memory[c].part_i == list->memory[d].part_i;
+    const bool same_b =
+        list->memory[c].part_j == list->memory[d].part_j && pls_image_key(list->pair[c].shift) == pls_image_key(list->pair[d].shift);
+    const double gap = shade_gap * fmin(own.a->size, own.b->size);
+    const pls_vec3 half = pls_scale(t->normal, 0.5 * t->delta);
+    return (same_a || pls_posed_sdf(other.a, pls_add(t->point, half)) < gap) &&
+           (same_b || pls_posed_sdf(other.b, pls_sub(t->point, half)) < gap);
+}
+
+/// Is the contact of candidate c one that the deeper contact of d stands for?
+static bool shades(const pls_solid_list *list, const pls_contact_input *in, size_t d, size_t c)
+{
+    return at_one_place(list, d, c) || has_points_of(list, in, d, c);
+}
+
+/// Which of the candidates first .. last, all of one pair of bodies, act: `next` gets their new PLS_SOLID_ state. What adds up over parts neither shades nor is shaded.
 static void choose_acting(const pls_solid_list *list, const pls_contact_input *in, size_t first, size_t last, uint8_t *next)
 {
-    const bool adds_up = in->laws->law[list->pair[first].law].narrow.faces == PLS_FACES_VOLUME;
     for (size_t c = first; c < last; ++c) next[c - first] = list->touch[c].delta > 0.0 ? PLS_SOLID_TOUCHES : PLS_SOLID_APART;
-    if (adds_up || last - first < 2) return;
+    if (last - first < 2) return;
     for (size_t c = first; c < last; ++c)
     {
-        if (next[c - first] == PLS_SOLID_APART) continue;
+        if (next[c - first] == PLS_SOLID_APART || list->touch[c].adds_up) continue;
         for (size_t d = first; d < last && next[c - first] == PLS_SOLID_TOUCHES; ++d)
         {
-            if (d == c || !(list->touch[d].delta > 0.0)) continue;
+            if (d == c || !(list->touch[d].delta > 0.0) || list->touch[d].adds_up) continue;
             bool deeper = list->touch[d].delta > list->touch[c].delta || (list->touch[d].delta == list->touch[c].delta && d < c);
-            if (deeper && shades(list, d, c)) next[c - first] = PLS_SOLID_SHADED;
+            if (deeper && shades(list, in, d, c)) next[c - first] = PLS_SOLID_SHADED;
         }
     }
 }

@@ -46,6 +46,7 @@ const verify_entry verify_cases[] = {
     {"rocking", "A box that rocks on its face: damped oscillator", case_rocking},
     {"lying", "Capsules and cylinders that lie along a line", case_lying},
     {"values-alone", "Bodies of which only the signed distance is known", case_values_alone},
+    {"pile", "A pile of grains of all kinds comes to rest", case_pile},
     {"spinning-on-face", "Spinning on a face: 2/3 mu m g R", case_spinning_on_face},
     {"column-stress", "Stress of a two-sphere column under a known force", case_column_stress},
     {"single-tangent", "Tangent operator of a single contact", case_single_contact_tangent},

@@ -73,7 +73,7 @@ verify_case case_free_rotation, case_free_rotation_drift, case_intermediate_axis
 verify_case case_book_oblique, case_book_pressed, case_rolling, case_sliding_to_rolling, case_cloud;
 verify_case case_free_fall, case_bouncing, case_driven, case_locks, case_motion_function;
 verify_case case_box_at_rest, case_box_comes_to_rest, case_stack, case_box_on_slope, case_rocking, case_spinning_on_face;
-verify_case case_lying, case_values_alone;
+verify_case case_lying, case_pile, case_values_alone;
 verify_case case_rolling_solids, case_ellipsoid_settles, case_box_top;
 verify_case case_solid_cloud, case_solid_book, case_solid_crowd;
 verify_case case_column_stress, case_single_contact_tangent, case_fcc_tangent;
