@@ -9,7 +9,7 @@
 /// Grains of all shapes dropped into a box; `faces` of all contacts.
 static verify_scene open_pile(int dimension, pls_faces faces)
 {
-    enum { COUNT = 2 * GRAIN_KINDS };
+    enum { COUNT = 2 * GRAIN_QUICK_KINDS + 1, CONE = 9 }; // two of each kind and a cone among them
     pls_world_def def = pls_default_world_def(dimension);
     def.dt = 2.5e-4;
     verify_scene scene =
@@ -29,7 +29,8 @@ static verify_scene open_pile(int dimension, pls_faces faces)
         const double across = 0.7 * (k % 4), along = dimension == 3 ? 0.7 * (k / 4 % 2) : 0.0;
         const pls_vec3 low = pls_vec(across, along, 0);
         const double height = 0.4 + 0.7 * (dimension == 3 ? k / 8 : k / 4);
-        pls_body_def grain = grain_def(&scene, shape[k % GRAIN_KINDS], (uint64_t)k, pls_add(low, pls_scale(up, height)));
+        pls_body_def grain =
+            grain_def(&scene, shape[k == CONE ? GRAIN_CONE : k % GRAIN_QUICK_KINDS], (uint64_t)k, pls_add(low, pls_scale(up, height)));
         grain.velocity = pls_scale(up, -2.0);
         verify_add(&scene, &grain);
     }

@@ -61,8 +61,8 @@ TEXT
 
 ## Energy
 
-$collisions collisions of each pair without friction and damping: a linear spring, 800 steps per contact (half a period of the spring with the mass that a push at the first touch moves), a stiffness at which a central impact overlaps by 2 % of the size, both grains spinning, random turns and offsets; velocity Verlet
-(\`tests/support/two_bodies.c\`). The same collisions for all: *default*, the depth, and where faces or lines lie on each other the force by all of them (\`faces: manifold\`); the *deepest point* alone (\`faces: point\`);
+Every pair of built-in shapes of 3D, the main ones of 2D, and a cone of which nothing is known but its signed distance (*SDF only*). $collisions collisions of each pair (a fifth where queries take long) without friction and damping: a linear spring, 800 steps per contact (half a period of the spring with the mass that a push at the first touch moves), a stiffness at which a central impact overlaps by 2 % of the size, both grains spinning, random turns and offsets; velocity Verlet
+(\`tests/support/two_bodies.c\`; the compound, two boxes and a ball, by the library's own step, where it is decided which contacts of parts act). The same collisions for all: *default*, the depth, and where faces or lines lie on each other the force by all of them (\`faces: manifold\`); the *deepest point* alone (\`faces: point\`);
 *eq. 14*. Queries that ADMM does not solve in 1000 iterations are answered by the depth, as in simulations. Numbers are |energy after / energy before - 1|. By default at most 1e-5 (median) and 2e-3 (worst) are allowed; pairs outside of that: $outside of $pairs. *Not solved* counts queries of the depth and of eq. 14: ADMM then circles slowly where an edge of one grain is nearly parallel to a ridge of the other's
 distance.
 

@@ -2,11 +2,13 @@
 
 #include "base/random.h"
 #include "support/numbers.h"
+#include "support/sdf_only.h"
 
 const char *grain_name(enum grain_kind kind)
 {
     static const char *const name[GRAIN_KINDS] = {"ball",        "ellipsoid", "superquadric", "capsule",
-                                                  "rounded box", "box",       "polyhedron",   "compound of two balls"};
+                                                  "rounded box", "box",       "polyhedron",   "compound of two balls",
+                                                  "cylinder",    "prism",     "SDF-only cone"};
     return name[kind];
 }
 
@@ -23,8 +25,15 @@ static pls_shape_id stone(const verify_scene *scene)
     return verify_add_hull(scene, point, POINTS);
 }
 
+static pls_shape_id column(const verify_scene *scene)
+{
+    static const pls_vec3 base[5] = {{0.36, 0.02, 0.0}, {0.1, 0.33, 0.0}, {-0.3, 0.2, 0.0}, {-0.27, -0.22, 0.0}, {0.15, -0.3, 0.0}};
+    return scene->dimension == 3 ? verify_add_prism(scene, base, 5, 0.5) : verify_add_hull(scene, base, 5);
+}
+
 pls_shape_id grain_shape(const verify_scene *scene, enum grain_kind kind)
 {
+    static const double cone[] = {0.28, 0.15, 0.4};
     switch (kind)
     {
         case GRAIN_BALL: return verify_add_shape(scene, "sphere", NUMBERS(0.35));
@@ -34,6 +43,11 @@ pls_shape_id grain_shape(const verify_scene *scene, enum grain_kind kind)
         case GRAIN_SOAP: return verify_add_shape(scene, "box", NUMBERS(0.3, 0.24, 0.2, 0.08));
         case GRAIN_BOX: return verify_add_shape(scene, "box", NUMBERS(0.33, 0.26, 0.22, 0.0));
         case GRAIN_STONE: return stone(scene);
+        case GRAIN_CYLINDER:
+            return scene->dimension == 3 ? verify_add_shape(scene, "cylinder", NUMBERS(0.26, 0.6, 0.0))
+                                         : verify_add_shape(scene, "box", NUMBERS(0.26, 0.3, 0.2, 0.0));
+        case GRAIN_PRISM: return column(scene);
+        case GRAIN_CONE: return verify_use_shape(scene, &sdf_only_cone, &(pls_shape_input){VALUES(cone)});
         default: return verify_add_dumbbell(scene, 0.22, 0.46);
     }
 }

@@ -13,7 +13,11 @@ enum grain_kind {
     GRAIN_BOX,
     GRAIN_STONE, ///< a polyhedron (2D: polygon)
     GRAIN_DUMBBELL,
-    GRAIN_KINDS
+    GRAIN_CYLINDER, ///< 2D: a rectangle
+    GRAIN_PRISM,    ///< 2D: a polygon
+    GRAIN_CONE,     ///< known by its signed distance alone
+    GRAIN_KINDS,
+    GRAIN_QUICK_KINDS = GRAIN_CONE ///< all but the cone, whose contacts take long to find
 };
 
 /// Add the shape; its bounding radius is 0.35 to 0.5.

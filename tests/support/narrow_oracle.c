@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "shape/builtin.h"
 #include "support/numbers.h"
+#include "support/sdf_only.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,27 +16,6 @@ static const double rounding = 2e-14; ///< of the size: coordinates are some siz
 // ---- shapes -------------------------------------------------------------------------------------------------------------------------------------------------------
 
 enum form { POINTS, CYLINDER, ELLIPSOID, SUPERQUADRIC, CONE, PLANE };
-
-static const double cone_low = 0.5, cone_high = 0.25, cone_length = 0.8; // two balls at z = 0 and z = cone_length, and what lies between
-
-/// Least distance from the balls, whose radii shrink along the axis.
-static double cone_sdf(const pls_shape *shape, pls_vec3 X)
-{
-    double axial = shape->dimension == 2 ? X.y : X.z, radial = shape->dimension == 2 ? fabs(X.x) : hypot(X.x, X.y);
-    double slope = (cone_low - cone_high) / cone_length, along = axial + radial * slope / sqrt(1.0 - slope * slope) * -1.0;
-    // The ball that is nearest: where the surface's normal, of slope `slope` to the radius, leads back to the axis.
-    double t = fmin(fmax(along, 0.0), cone_length);
-    return hypot(radial, axial - t) - (cone_low - slope * t);
-}
-
-static const pls_parameter no_parameters[] = {{.name = NULL}};
-static const pls_shape_ops cone_ops = {.api_version = PLS_API_VERSION,
-                                       .name = "sdf-only cone",
-                                       .parameters = no_parameters,
-                                       .in_2d = true,
-                                       .in_3d = true,
-                                       .convex = true,
-                                       .sdf = cone_sdf};
 
 typedef struct shape_row
 {
@@ -56,7 +36,7 @@ static const shape_row rows_3d[NARROW_SHAPES_3D] = {
     {"superquadric", &pls_superquadric_shape, SUPERQUADRIC, {0.6, 0.5, 0.45, 0.5, 0.7}, 0},
     {"polyhedron 32", &pls_polyhedron_shape, POINTS, {0.0}, 32},
     {"polyhedron 128", &pls_polyhedron_shape, POINTS, {0.0}, 128},
-    {"sdf-only cone", &cone_ops, CONE, {0.0}, 0},
+    {"sdf-only cone", &sdf_only_cone, CONE, {0.5, 0.25, 0.8}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
 static const shape_row rows_2d[NARROW_SHAPES_2D] = {
@@ -65,7 +45,7 @@ static const shape_row rows_2d[NARROW_SHAPES_2D] = {
     {"polygon 12", &pls_polygon_shape, POINTS, {0.0}, 12},
     {"capsule", &pls_capsule_shape, POINTS, {0.3, 0.9}, 0},
     {"ellipse", &pls_ellipsoid_shape, ELLIPSOID, {0.7, 0.4, 1.0}, 0},
-    {"sdf-only cone", &cone_ops, CONE, {0.0}, 0},
+    {"sdf-only cone", &sdf_only_cone, CONE, {0.5, 0.25, 0.8}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
 
@@ -180,12 +160,12 @@ static pls_vec3 own_support(const body *s, pls_vec3 n)
         }
         case CONE:
         {
-            double axial = flat ? n.y : n.z, high = cone_length * axial + cone_high > cone_low ? 1.0 : 0.0;
-            pls_vec3 p = pls_scale(n, high == 1.0 ? cone_high : cone_low);
+            double axial = flat ? n.y : n.z, high = v[2] * axial + v[1] > v[0] ? 1.0 : 0.0;
+            pls_vec3 p = pls_scale(n, high == 1.0 ? v[1] : v[0]);
             if (flat)
-                p.y += high * cone_length;
+                p.y += high * v[2];
             else
-                p.z += high * cone_length;
+                p.z += high * v[2];
             return p;
         }
         default: return pls_vec(0.0, 0.0, 0.0);

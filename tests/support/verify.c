@@ -75,16 +75,33 @@ pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, cons
     return id;
 }
 
-static pls_shape_id use_shape(const verify_scene *scene, const char *ops, const pls_shape_input *input)
+pls_shape_id verify_use_shape(const verify_scene *scene, const pls_shape_ops *ops, const pls_shape_input *input)
 {
     pls_shape *shape;
     pls_shape_id id;
     char name[PLS_NAME_SIZE];
-    free_name(scene, ops, name);
-    MUST(pls_shape_make(verify_shape(ops), scene->dimension, input, name, &shape));
+    free_name(scene, ops->name, name);
+    MUST(pls_shape_make(ops, scene->dimension, input, name, &shape));
     MUST(pls_world_use_shape(scene->world, name, shape, &id));
     pls_shape_free(shape);
     return id;
+}
+
+static pls_shape_id use_shape(const verify_scene *scene, const char *name, const pls_shape_input *input)
+{
+    return verify_use_shape(scene, verify_shape(name), input);
+}
+
+pls_shape_id verify_add_prism(const verify_scene *scene, const pls_vec3 *points, size_t count, double height)
+{
+    const double values[] = {0.0, height};
+    return use_shape(scene, "prism", &(pls_shape_input){VALUES(values), .points = points, .point_count = count});
+}
+
+pls_shape_id verify_add_mesh(const verify_scene *scene, const char *path)
+{
+    const double values[] = {0.0, 1.0}; // rounding, scale
+    return use_shape(scene, "mesh", &(pls_shape_input){VALUES(values), .path = path});
 }
 
 pls_shape_id verify_add_hull(const verify_scene *scene, const pls_vec3 *points, size_t count)

@@ -35,6 +35,12 @@ void verify_set_law(pls_world *world, pls_material_id a, pls_material_id b, cons
 
 /// A built-in shape with all of its numbers, in the order of its table.
 pls_shape_id verify_add_shape(const verify_scene *scene, const char *shape, const double *values, size_t count);
+/// A shape of any operations.
+pls_shape_id verify_use_shape(const verify_scene *scene, const pls_shape_ops *ops, const pls_shape_input *input);
+/// The convex hull of points of the x-y plane, extruded along z.
+pls_shape_id verify_add_prism(const verify_scene *scene, const pls_vec3 *points, size_t count, double height);
+/// A wall of triangles from a mesh file.
+pls_shape_id verify_add_mesh(const verify_scene *scene, const char *path);
 /// The convex hull of points.
 pls_shape_id verify_add_hull(const verify_scene *scene, const pls_vec3 *points, size_t count);
 /// A compound of two spheres (2D: discs) on the x axis.

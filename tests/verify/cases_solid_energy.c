@@ -14,7 +14,7 @@ static void use_faces(const verify_scene *scene, pls_faces faces) { verify_set_f
 
 // ---- a cloud --------------------------------------------------------------------------------------------------------------------------------------------
 
-/// 500 grains of eight shapes fly into each other, without walls or gravity.
+/// 500 grains of ten shapes fly into each other, without walls or gravity.
 static void fly(verify_sheet *sheet, pls_faces faces, const char *name)
 {
     enum { COUNT = 500, SIDE = 8 };
@@ -24,13 +24,13 @@ static void fly(verify_sheet *sheet, pls_faces faces, const char *name)
         verify_open(&def, "viscoelastic",
                     (const verify_value[]){{"kn", 2000.0}, {"ks", 1500.0}, {"cn", 0.5}, {"cs", 0.3}, {"friction", 0.3}, {NULL, 0.0}});
     use_faces(&scene, faces);
-    pls_shape_id shape[GRAIN_KINDS];
-    for (int k = 0; k < GRAIN_KINDS; ++k) shape[k] = grain_shape(&scene, (enum grain_kind)k);
+    pls_shape_id shape[GRAIN_QUICK_KINDS];
+    for (int k = 0; k < GRAIN_QUICK_KINDS; ++k) shape[k] = grain_shape(&scene, (enum grain_kind)k);
     for (int k = 0; k < COUNT; ++k)
     {
         pls_random random = pls_random_stream(7, (uint64_t)k, PLS_FOR_USER);
         pls_vec3 x = pls_vec(k % SIDE - 3.5, k / SIDE % SIDE - 3.5, k / (SIDE * SIDE) - 3.5);
-        pls_body_def grain = grain_def(&scene, shape[k % GRAIN_KINDS], (uint64_t)k, x);
+        pls_body_def grain = grain_def(&scene, shape[k % GRAIN_QUICK_KINDS], (uint64_t)k, x);
         grain.velocity = pls_add(pls_add(pls_scale(x, -1.5), pls_vec(0, 0.4 * x.x, 0)), random_vector(&random));
         grain.angular_velocity = pls_scale(random_vector(&random), 2.0);
         verify_add(&scene, &grain);
@@ -168,25 +168,40 @@ static double trap_potential(pls_vec3 position, double mass)
     return 2.5 * pls_dot(position, position);
 }
 
-/// Largest relative error of the energy book of grains of all shapes that a field pulls together: they collide, press, roll and spin on each other.
-static double crowd_error(pls_faces faces, double dt, int steps, size_t *most)
+/// Grains of one kind, of all but the slow ones (GRAIN_QUICK_KINDS), and whether there are walls about them.
+typedef struct crowd
 {
-    enum { COUNT = 48, SIDE = 4 };
+    pls_faces faces;
+    enum grain_kind kind;
+    bool walls; ///< of a mesh
+} crowd;
+
+enum { CROWD = 50, SIDE = 4 }; ///< as many grains as five of each kind
+
+/// Largest relative error of the energy book of grains that a field pulls together: they collide, press, roll and spin on each other and on walls.
+static double crowd_error(const crowd *p, double dt, int steps, size_t *most)
+{
     static const verify_field trap = {trap_force, trap_potential};
     pls_world_def def = pls_default_world_def(3);
     def.dt = dt;
     verify_scene scene =
         verify_open(&def, "viscoelastic",
                     (const verify_value[]){{"kn", 2000.0}, {"ks", 1500.0}, {"cn", 0.5}, {"cs", 0.3}, {"friction", 0.3}, {NULL, 0.0}});
-    use_faces(&scene, faces);
+    use_faces(&scene, p->faces);
     verify_add_field(scene.world, &trap);
-    pls_shape_id shape[GRAIN_KINDS];
-    for (int k = 0; k < GRAIN_KINDS; ++k) shape[k] = grain_shape(&scene, (enum grain_kind)k);
-    for (int k = 0; k < COUNT; ++k)
+    if (p->walls)
+    {
+        pls_body_def room = verify_body_def(&scene, verify_add_mesh(&scene, PLS_TEST_DATA "/room.obj"), pls_vec(0, 0, 0));
+        room.motion.axes = PLS_AXIS_ALL;
+        verify_add(&scene, &room);
+    }
+    pls_shape_id shape[GRAIN_QUICK_KINDS];
+    for (int k = 0; k < GRAIN_QUICK_KINDS; ++k) shape[k] = grain_shape(&scene, p->kind == GRAIN_QUICK_KINDS ? (enum grain_kind)k : p->kind);
+    for (int k = 0; k < CROWD; ++k)
     {
         pls_random random = pls_random_stream(9, (uint64_t)k, PLS_FOR_USER);
         pls_vec3 x = pls_vec(k % SIDE - 1.5, k / SIDE % SIDE - 1.5, k / (SIDE * SIDE) - 1.0);
-        pls_body_def grain = grain_def(&scene, shape[k % GRAIN_KINDS], (uint64_t)k, x);
+        pls_body_def grain = grain_def(&scene, shape[k % GRAIN_QUICK_KINDS], (uint64_t)k, x);
         grain.velocity = pls_add(pls_vec(0, 2.0 * x.x, 0), random_vector(&random));
         grain.angular_velocity = pls_scale(random_vector(&random), 2.0);
         verify_add(&scene, &grain);
@@ -214,8 +229,9 @@ void case_solid_crowd(verify_sheet *sheet)
     for (int k = 0; k < 2; ++k)
     {
         size_t most;
-        const double error = crowd_error(faces[k], 5e-5, steps, &most);
-        sheet_below(sheet, error, 1e-4, "48 grains of all shapes, faces: %s: relative error of the energy book in %d steps", name[k],
+        const crowd p = {faces[k], GRAIN_QUICK_KINDS, false};
+        const double error = crowd_error(&p, 5e-5, steps, &most);
+        sheet_below(sheet, error, 1e-4, "%d grains of all shapes, faces: %s: relative error of the energy book in %d steps", CROWD, name[k],
                     steps);
         sheet_below(sheet, 1.0 / (double)most, 1.0 / 20.0, "one over the most contacts at a time");
         enum { MOST = 4 };
@@ -224,9 +240,15 @@ void case_solid_crowd(verify_sheet *sheet)
         for (int level = 0; level < levels; ++level)
         {
             dt[level] = 2e-4 / (1 << level);
-            errors[level] = crowd_error(faces[k], dt[level], 2500 << level, &most);
+            errors[level] = crowd_error(&p, dt[level], 2500 << level, &most);
         }
         sheet_below(sheet, fmax(0.0, 2.0 - fitted_order(levels, dt, errors)), 0.25,
                     "faces: %s: what the order in dt of the error in 0.5 s lacks of two", name[k]);
     }
+    if (!sheet->thorough) return;
+    size_t most;
+    const crowd within = {PLS_FACES_MANIFOLD, GRAIN_QUICK_KINDS, true};
+    sheet_below(sheet, crowd_error(&within, 5e-5, steps, &most), 1e-4,
+                "%d grains of all shapes within walls of a mesh, faces: manifold: relative error of the energy book in %d steps", CROWD,
+                steps);
 }
