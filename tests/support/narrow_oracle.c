@@ -397,27 +397,38 @@ static double by_bounding(const body *a, const body *b, pls_vec3 known, double u
     return low;
 }
 
-/// From above: polls rings of directions about n that shrink, until F is no more than `enough`. F has kinks (a support point jumps from end to end of a straight line), where an
-/// error of the normal counts in first order.
-static double by_polling(const body *a, const body *b, pls_vec3 *n, double enough, pls_random *random)
+/// Golden section over t from -reach to reach of F along n + t e, or, if there is another direction f, of the least F along n + t e + u f over u.
+static double least_of_strip(const body *a, const body *b, pls_vec3 n, pls_vec3 e, const pls_vec3 *f, double reach, pls_vec3 *best)
 {
-    const int dimension = a->shape->dimension, ring = dimension == 2 ? 2 : 10;
-    double least = F_of(a, b, *n);
-    for (double step = 1e-5; step > 1e-16 && least > enough;)
+    enum { SECTIONS = 45 };
+    const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    double low = -reach, high = reach, least = INFINITY, value[2] = {0.0, 0.0};
+    for (int k = 0; k < SECTIONS; ++k)
     {
-        const pls_vec3 c = *n, off = fabs(c.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0);
-        const pls_vec3 u = pls_unit(pls_cross(off, c)), v = pls_cross(c, u);
-        const double before = least, phase = dimension == 2 ? 0.0 : pls_random_uniform(random);
-        for (int k = 0; k < ring; ++k)
+        const double at[2] = {high - golden * (high - low), low + golden * (high - low)};
+        for (int m = 0; m < 2; ++m)
         {
-            const double angle = 2.0 * M_PI * (k + phase) / ring, across = dimension == 2 ? 0.0 : sin(angle);
-            const pls_vec3 m = pls_unit(pls_add(c, pls_scale(pls_add(pls_scale(u, cos(angle)), pls_scale(v, across)), step)));
-            const double F = F_of(a, b, m);
-            if (F < least) least = F, *n = m;
+            pls_vec3 there = pls_add(n, pls_scale(e, at[m]));
+            if (k > 0 && !isnan(value[m])) continue; // known from the last section
+            value[m] = f ? least_of_strip(a, b, there, *f, NULL, reach, &there) : F_of(a, b, there = pls_unit(there));
+            if (value[m] < least) least = value[m], *best = there;
         }
-        if (!(least < before)) step *= 0.7;
+        if (value[0] < value[1])
+            high = at[1], value[1] = value[0], value[0] = NAN;
+        else
+            low = at[0], value[0] = value[1], value[1] = NAN;
     }
     return least;
+}
+
+/// From above: the least F near n, by golden sections within golden sections, as F has kinks (a support point jumps from end to end of a straight line), where an error of the normal
+/// counts in first order. F is convex, and so is its least over one of two coordinates as a function of the other.
+static double least_nearby(const body *a, const body *b, pls_vec3 *n)
+{
+    static const double reach = 1e-5; // by far more than normals are wrong
+    const pls_vec3 c = *n, off = fabs(c.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0);
+    const pls_vec3 u = pls_unit(pls_cross(off, c)), v = pls_cross(c, u);
+    return least_of_strip(a, b, c, u, a->shape->dimension == 2 ? NULL : &v, reach, n);
 }
 
 // ---- comparison -------------------------------------------------------------------------------------------------------------------------------------------------
@@ -442,7 +453,7 @@ static double floor_of(const body *a, const body *b)
 }
 
 /// Bounds from both sides; `search`: the oracle's own lower one also where a ball proves it.
-static void compare(const body *a, const body *b, const pls_touch *t, double allowed, bool search, pls_random *random, narrow_tally *tally)
+static void compare(const body *a, const body *b, const pls_touch *t, double allowed, bool search, narrow_tally *tally)
 {
     const double size = fmin(a->pose.size, b->pose.size), delta = t->delta;
     ++tally->checked;
@@ -458,7 +469,7 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
     double error = fmax(fabs(delta - F_of(a, b, n)) / size, fabs(pls_length(n) - 1.0));
     if (error > enough && delta < F_of(a, b, n)) // is there less nearby?
     {
-        error = (by_polling(a, b, &n, delta + enough * size, random) - delta) / size;
+        error = fabs(least_nearby(a, b, &n) - delta) / size;
         worst(&tally->normal, pls_length(pls_sub(n, t->normal)));
     }
     worst(&tally->points, points);
@@ -575,7 +586,7 @@ void narrow_random(int dimension, int ka, int kb, int pairs, int searched, uint6
         pls_pair_state state = {{0}};
         pls_touch t;
         query(&a, &b, &state, &t, &tally->counts);
-        compare(&a, &b, &t, narrow_allowed(dimension, ka, kb), k / 2 % searched == 0, &random, tally);
+        compare(&a, &b, &t, narrow_allowed(dimension, ka, kb), k / 2 % searched == 0, tally);
     }
 }
 
@@ -650,7 +661,7 @@ void narrow_tumble(int dimension, int ka, int kb, int trajectories, int steps, i
         for (int m = k % every; m < steps; m += every)
         {
             set_pose(&a, poses[m][0]), set_pose(&b, poses[m][1]);
-            compare(&a, &b, &answer[m], narrow_allowed(dimension, ka, kb), m / every % searched == 0, &random, tally);
+            compare(&a, &b, &answer[m], narrow_allowed(dimension, ka, kb), m / every % searched == 0, tally);
         }
     }
     tally->nanoseconds = 1e9 * spent / ((double)trajectories * steps);
