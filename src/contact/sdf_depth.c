@@ -11,13 +11,13 @@
 
 #include "contact/sdf_depth.h"
 
-static const double flat = 1e-7;    ///< of |grad phi_A + grad phi_B| at which BFGS is done
+static const double flat = 1e-7;     ///< of |grad phi_A + grad phi_B| at which BFGS is done
 static const double shortest = 1e-7; ///< step that tells of the second derivative, of the size: of a shorter one it is noise
-static const double pushed = 0.05;  ///< sizes that B is pushed beyond touching
-static const double level = 3e-8;   ///< as `flat`, of bodies pushed apart: what differences of values allow
-static const double coarse = 1e-4;  ///< as `level`, of the first turn,
-static const double share = 0.05;   ///< and of the turn that was made, of later ones
-static const double settled = 1e-7; ///< turn of the normal at which it is done; squared it is less than round-off
+static const double pushed = 0.05;   ///< sizes that B is pushed beyond touching
+static const double level = 3e-8;    ///< as `flat`, of bodies pushed apart: what differences of values allow
+static const double coarse = 1e-4;   ///< as `level`, of the first turn,
+static const double share = 0.05;    ///< and of the turn that was made, of later ones
+static const double settled = 1e-7;  ///< turn of the normal at which it is done; squared it is less than round-off
 enum { MOST_TURNS = 20, MOST_DESCENTS = 12, HALVINGS = 20 };
 
 typedef struct probe
@@ -110,6 +110,17 @@ void pls_sdf_depth_bfgs(const pls_posed *a, const pls_posed *b, pls_vec3 middle,
     for (int k = 0; k < 6; ++k) state->inverse[k] = m[k];
 }
 
+/// Points that lie beside each other by an error: one of them, and what is `delta` along n from there. An error across n leaves a sharp edge in first order, a round side in second:
+/// so the one whose opposite lies nearer to its surface.
+static void set_opposite(const pls_posed *a, const pls_posed *b, pls_overlap *out)
+{
+    const pls_vec3 through = pls_scale(out->normal, out->delta), of_a = pls_sub(out->on_a, through), of_b = pls_add(out->on_b, through);
+    if (fabs(pls_posed_sdf(b, of_a)) < fabs(pls_posed_sdf(a, of_b)))
+        out->on_b = of_a;
+    else
+        out->on_a = of_b;
+}
+
 void pls_sdf_depth_pushed(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double delta, pls_vec3 middle, pls_sdf_state *state,
                           pls_overlap *out)
 {
@@ -130,8 +141,8 @@ void pls_sdf_depth_pushed(const pls_posed *a, const pls_posed *b, pls_vec3 norma
             const double length = pls_length(s), turned = pls_length(pls_sub(now.n, pls_scale(s, 1.0 / length)));
             out->delta = pls_dot(s, now.n) - now.f;
             out->normal = now.n;
-            out->on_a = pls_sub(now.x, pls_scale(now.ga, now.a));
-            out->on_b = pls_sub(pls_sub(now.x, pls_scale(now.gb, now.b)), s);
+            out->on_a = pls_sub(now.x, pls_scale(pls_unit(now.ga), now.a)); // differences are not quite of length 1
+            out->on_b = pls_sub(pls_sub(now.x, pls_scale(pls_unit(now.gb), now.b)), s);
             out->converged = steps <= MOST_DESCENTS && turned < settled && small <= level;
             small = fmax(level, share * turned);
         }
@@ -142,6 +153,7 @@ void pls_sdf_depth_pushed(const pls_posed *a, const pls_posed *b, pls_vec3 norma
         }
         s = pls_scale(out->normal, fmax(out->delta, 0.0) + further);
     }
+    set_opposite(a, b, out);
     state->x = pls_posed_own(a, now.x);
     for (int k = 0; k < 6; ++k) state->inverse[k] = m[k];
 }
