@@ -45,8 +45,8 @@ _Static_assert(FEATURES * sizeof(double) >= sizeof(pls_depth_state), "two memori
 static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
 
 static const double rounding = 1e-13; ///< of the smaller radius, of distances
-static const double near = 1e-6;      ///< of the smaller radius: what is found from a depth that is right to some digits is no other minimum
-static const double proof = 1e-7;     ///< of the depth: by how much a ball that proves it may be too small
+static const double near = 1e-6;  ///< of the smaller radius: what is found from a depth that is right to some digits is no other minimum
+static const double proof = 1e-7; ///< of the depth: by how much a ball that proves it may be too small
 
 typedef struct query
 {
@@ -260,12 +260,23 @@ static void ask_again(const query *q, pls_depth *d)
     if (less && pls_feature_depth(q->a, q->b, other.normal, PLS_FEATURES_LAST_STEP, memory, &finer) && finer.delta < d->delta) *d = finer;
 }
 
+/// Where something round is as good as flat its support point runs away under a normal that turns by round-off; distances outside are certain. Not for two polytopes, which nothing is gained for.
+static bool by_values(const query *q, const pls_depth *d, pls_depth *finer)
+{
+    pls_sdf_state own = {.x = {0.0, 0.0, 0.0}};
+    pls_overlap o;
+    if (!(q->a->shape->ops->smooth || q->b->shape->ops->smooth)) return false;
+    pls_sdf_depth_pushed(q->a, q->b, d->normal, d->delta, pls_scale(pls_add(d->on_a, d->on_b), 0.5), &own, &o);
+    *finer = depth_of(&o);
+    return o.converged;
+}
+
 /// The last digits: GJK and the expanding polytope only come near to what is round. Of cores apart any minimum is the distance; of others it has to be the one that was found.
 static void polish(const query *q, pls_depth *d)
 {
     pls_depth finer;
     const double size = fmin(q->a->size, q->b->size);
-    if (!pls_feature_depth(q->a, q->b, d->normal, PLS_FEATURES_NOW, q->state + FEATURES, &finer)) return;
+    if (!pls_feature_depth(q->a, q->b, d->normal, PLS_FEATURES_NOW, q->state + FEATURES, &finer) && !by_values(q, d, &finer)) return;
     const bool apart = finer.delta < q->a->shape->margin * q->a->scale + q->b->shape->margin * q->b->scale;
     if (!apart && !(fabs(finer.delta - d->delta) < near * size)) return;
     finer.iterations += d->iterations;
