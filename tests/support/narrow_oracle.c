@@ -10,7 +10,7 @@
 
 static const double most_overlap = 0.1; ///< of the smaller bounding radius: 5 % of the size
 static const double least_overlap = 2e-6;
-static const double rounding = 2e-14; ///< of the size: coordinates are some sizes away from zero
+static const double rounding = 4e-15; ///< of the size: ten roundings of coordinates that are up to four sizes away from zero
 
 // ---- shapes -------------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -56,6 +56,10 @@ static const shape_row rows_3d[NARROW_SHAPES_3D] = {
     {"superquadric", &pls_superquadric_shape, SUPERQUADRIC, {0.6, 0.5, 0.45, 0.5, 0.7}, 0},
     {"polyhedron 32", &pls_polyhedron_shape, POINTS, {0.0}, 32},
     {"polyhedron 128", &pls_polyhedron_shape, POINTS, {0.0}, 128},
+    {"prism", &pls_prism_shape, POINTS, {0.0, 0.7}, 7},
+    {"rounded polyhedron 32", &pls_polyhedron_shape, POINTS, {0.1}, 32},
+    {"rounded cylinder", &pls_cylinder_shape, CYLINDER, {0.5, 0.9, 0.1}, 0},
+    {"rounded ellipsoid", &pls_ellipsoid_shape, ELLIPSOID, {0.6, 0.4, 0.3, 0.1}, 0},
     {"sdf-only cone", &cone_ops, CONE, {0.0}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
@@ -65,6 +69,8 @@ static const shape_row rows_2d[NARROW_SHAPES_2D] = {
     {"polygon 12", &pls_polygon_shape, POINTS, {0.0}, 12},
     {"capsule", &pls_capsule_shape, POINTS, {0.3, 0.9}, 0},
     {"ellipse", &pls_ellipsoid_shape, ELLIPSOID, {0.7, 0.4, 1.0}, 0},
+    {"superellipse", &pls_superquadric_shape, SUPERQUADRIC, {0.6, 0.45, 1.0, 1.0, 0.6}, 0},
+    {"rounded polygon 12", &pls_polygon_shape, POINTS, {0.1}, 12},
     {"sdf-only cone", &cone_ops, CONE, {0.0}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
@@ -155,7 +161,8 @@ static double dual_norm(double u, double v, double P, double *du, double *dv)
     return h;
 }
 
-static pls_vec3 own_support(const body *s, pls_vec3 n)
+/// Without the margin.
+static pls_vec3 core_support(const body *s, pls_vec3 n)
 {
     const double *v = s->row->values;
     const bool flat = s->shape->dimension == 2;
@@ -164,7 +171,8 @@ static pls_vec3 own_support(const body *s, pls_vec3 n)
         case CYLINDER:
         {
             double side = hypot(n.x, n.y);
-            return pls_vec(side > 0.0 ? v[0] * n.x / side : 0.0, side > 0.0 ? v[0] * n.y / side : 0.0, copysign(0.5 * v[1], n.z));
+            const double r = v[0] - v[2], h = 0.5 * v[1] - v[2];
+            return pls_vec(side > 0.0 ? r * n.x / side : 0.0, side > 0.0 ? r * n.y / side : 0.0, copysign(h, n.z));
         }
         case ELLIPSOID:
         {
@@ -191,6 +199,8 @@ static pls_vec3 own_support(const body *s, pls_vec3 n)
         default: return pls_vec(0.0, 0.0, 0.0);
     }
 }
+
+static pls_vec3 own_support(const body *s, pls_vec3 n) { return pls_add(core_support(s, n), pls_scale(n, s->shape->margin)); }
 
 /// The point of the body furthest along the unit vector n, in the world.
 static pls_vec3 support(const body *s, pls_vec3 n)
@@ -444,14 +454,6 @@ static double bound_of_balls(const body *a, const body *b, pls_vec3 on_a, pls_ve
     return fmax(-pls_posed_sdf(&a->pose, on_b), -pls_posed_sdf(&b->pose, on_a));
 }
 
-/// Depths and distances, as parts of the size, below which errors are parts of this one: for polytopes rounding is all there is; where something is round 5 %, the deepest in the campaign; of values
-/// alone, of which differences are taken, the size.
-static double floor_of(const body *a, const body *b)
-{
-    if (a->row->form == CONE || b->row->form == CONE) return 1.0;
-    return a->row->form == POINTS && (b->row->form == POINTS || b->row->form == PLANE) ? 1e-6 : 0.05;
-}
-
 /// Bounds from both sides; `search`: the oracle's own lower one also where a ball proves it.
 static void compare(const body *a, const body *b, const pls_touch *t, double allowed, bool search, narrow_tally *tally)
 {
@@ -462,8 +464,7 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
         ++tally->not_finite;
         return;
     }
-    const double depth = fmax(fabs(delta) / size, 1e-6), most = allowed * fmax(depth, floor_of(a, b)) + rounding;
-    const double enough = 0.1 * (allowed * depth + rounding);
+    const double most = allowed * fabs(delta) / size + rounding, enough = 0.1 * most;
     pls_vec3 n = t->normal, half = pls_scale(n, 0.5 * delta), on_a = pls_add(t->point, half), on_b = pls_sub(t->point, half);
     double points = fmax(fabs(pls_posed_sdf(&a->pose, on_a)), fabs(pls_posed_sdf(&b->pose, on_b))) / size;
     double error = fmax(fabs(delta - F_of(a, b, n)) / size, fabs(pls_length(n) - 1.0));
@@ -485,12 +486,15 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
         error = fmax(error, (delta - (polytopes ? by_axes(a, b) : by_bounding(a, b, known, delta, enough * size))) / size + 2.0 * points);
     }
     worst(&tally->depth, error);
-    tally->above += error > allowed * depth + rounding;
     if (fabs(delta) > 1e-6 * size) worst(&tally->depth_relative, error * size / fabs(delta));
-    if (error > most || (apart && points > most))
+    if (error > most || points > 1e-6 * fabs(delta) / size + rounding)
     {
         if (getenv("NARROW_VERBOSE") && tally->wrong < 5)
-            fprintf(stderr, "wrong: depth %.9g of the size, error %.3g, points %.3g\n", delta / size, error, points);
+            fprintf(stderr, "wrong: %s - %s: depth %.9g of the size, error %.3g, points %.3g, %s\n", a->row->name, b->row->name,
+                    delta / size, error, points,
+                    apart                ? "apart"
+                    : left_open < enough ? "ball"
+                                         : "searched");
         ++tally->wrong;
     }
 }
