@@ -482,8 +482,9 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
     else if (!apart && b->row->form != PLANE)
     {
         ++tally->searched;
-        const pls_vec3 known = pls_sub(on_a, on_b);
-        error = fmax(error, (delta - (polytopes ? by_axes(a, b) : by_bounding(a, b, known, delta, enough * size))) / size + 2.0 * points);
+        const pls_vec3 known = pls_sub(on_a, on_b); // of the Minkowski difference but for what the points are off by
+        const double least = polytopes ? by_axes(a, b) : by_bounding(a, b, known, delta, enough * size) - 2.0 * points * size;
+        error = fmax(error, (delta - least) / size);
     }
     worst(&tally->depth, error);
     if (fabs(delta) > 1e-6 * size) worst(&tally->depth_relative, error * size / fabs(delta));
