@@ -22,7 +22,8 @@ static const double enough = 1e-13;      ///< of the size, on what is left of th
 static const double rounding = 1e-14;    ///< of the size: by which other vertices may be higher
 static const double longest = 0.3;       ///< step [rad]
 static const double nearly_along = 1e-4; ///< sine of the angle of edges that leave no normal to speak of
-enum { MOST = 8, MOST_CHANGES = 6 };
+static const double sloping = 1e-9;      ///< slope of the distance along an edge that leaves its least value to round-off
+enum { MOST = 8, MOST_CHANGES = 6, MOST_CHORDS = 60 };
 
 enum kind { UNKNOWN, ROUND, CORNER, EDGE, FACE };
 
@@ -377,6 +378,64 @@ static enum answer at_face(side *face, side *other, pls_vec3 *n, double *F)
     return over_face(face, face->on);
 }
 
+/// Of straight lines and corners alone.
+static bool is_sharp(const side *s) { return s->kind == EDGE || (s->kind == CORNER && !s->cylinder); }
+
+/// Where the round one is as good as flat its point runs away under a normal that turns by round-off. The other way about, from a point on the edge, its nearest point is certain: the distance
+/// to it is convex along the edge, and where the slope changes sign is the place.
+static enum answer by_distance(side *round, side *sharp, pls_vec3 *n, pls_depth *out)
+{
+    const double tiny = 1e-16 * (sharp->high - sharp->low);
+    double low = sharp->low, high = sharp->high, slope_low = 0.0, slope_high = 0.0;
+    look(sharp, *n);
+    double margin = sharp->margin;
+    if (sharp->cylinder) // its axis, thickened
+    {
+        sharp->point = pls_posed_world(sharp->p, pls_vec(0.0, 0.0, 0.0));
+        margin += cylinder_radius(sharp->p->shape) * sharp->p->scale;
+    }
+    pls_vec3 x = sharp->point, g = pls_posed_gradient(round->p, x);
+    if (sharp->kind == EDGE)
+    {
+        slope_low = pls_dot(pls_posed_gradient(round->p, pls_add(sharp->point, pls_scale(sharp->edge, low))), sharp->edge);
+        slope_high = pls_dot(pls_posed_gradient(round->p, pls_add(sharp->point, pls_scale(sharp->edge, high))), sharp->edge);
+        if (slope_low >= 0.0 || slope_high <= 0.0)
+        {
+            to_end(sharp, slope_high <= 0.0);
+            return CHANGED;
+        }
+        // Chords, of which the end that stays counts half (the Illinois algorithm).
+        for (int k = 0, last = 0; k < MOST_CHORDS && high - low > tiny; ++k)
+        {
+            const double t = (low * slope_high - high * slope_low) / (slope_high - slope_low);
+            x = pls_add(sharp->point, pls_scale(sharp->edge, t));
+            g = pls_posed_gradient(round->p, x);
+            const double slope = pls_dot(g, sharp->edge);
+            out->iterations += 1;
+            if (fabs(slope) < sloping) break;
+            if (slope < 0.0)
+            {
+                low = t, slope_low = slope;
+                if (last < 0) slope_high *= 0.5;
+                last = -1;
+            }
+            else
+            {
+                high = t, slope_high = slope;
+                if (last > 0) slope_low *= 0.5;
+                last = 1;
+            }
+        }
+        g = pls_unit(pls_sub(g, pls_scale(sharp->edge, pls_dot(g, sharp->edge))));
+    }
+    const double phi = pls_posed_sdf(round->p, x);
+    *n = pls_scale(g, round->sign);
+    out->delta = margin - phi;
+    sharp->on = pls_sub(x, pls_scale(g, margin));
+    round->on = pls_sub(x, pls_scale(g, phi));
+    return FOUND;
+}
+
 static enum answer solve(side *a, side *b, pls_vec3 *n, pls_depth *out)
 {
     if (!take(a) || !take(b)) return NONE;
@@ -388,7 +447,11 @@ static enum answer solve(side *a, side *b, pls_vec3 *n, pls_depth *out)
     if (a->p->shape->dimension == 2) add_limit(&l, pls_vec(0.0, 0.0, 1.0), NULL);
     pls_vec3 gap;
     int iterations = 0;
-    if (!start_normal(&l, n) || !find_normal(a, b, &l, n, &out->delta, &gap, &iterations)) return NONE;
+    if (!start_normal(&l, n)) return NONE;
+    if (!find_normal(a, b, &l, n, &out->delta, &gap, &iterations))
+        return is_sharp(a) && b->kind == ROUND   ? by_distance(b, a, n, out)
+               : is_sharp(b) && a->kind == ROUND ? by_distance(a, b, n, out)
+                                                 : NONE;
     out->iterations += iterations;
     return l.count == 0 ? FOUND : slide(&l, gap);
 }

@@ -9,8 +9,8 @@
 //   other supports       Newton on what the features that touched leave open (feature_depth.c); when others do, GJK on shapes pushed apart, warm (incremental_depth.c); the
 //                        expanding polytope when cold, deep, or GJK stalls
 //   smooth on smooth     Newton on the sphere of normals (smooth_depth.c); when it stalls, BFGS; then the expanding polytope
-//   SDFs alone           BFGS on one point between the surfaces, then alternating projections (sdf_depth.c), then the expanding polytope on support points that follow from
-//                        the SDF. What won last is tried first
+//   SDFs alone           BFGS on one point between the surfaces; its last digits, and what it cannot do, on the shapes pushed apart (sdf_depth.c); then the expanding polytope
+//                        on support points that follow from the SDF. Warm on the shapes pushed apart at once
 //   not convex           pieces of the surfaces (sampled_touch.c), and so are flat places that only an SDF knows of. For PLS_FACES_POINT BFGS from the deepest of a grid of points
 //                        in the overlap of the bounding boxes: a place where the two surfaces face each other, so `delta` is right for that place; that no other place is
 //                        deeper is only as certain as the grid is fine
@@ -41,13 +41,14 @@ enum {
     FEATURES = PLS_PAIR_STATE - PLS_FEATURE_MEMORY, ///< of `pls_feature_depth`, beside what INCREMENTAL needs
     ADMM = 8                                        ///< 24, for that solver alone
 };
-enum winner { NOTHING, INCREMENTAL, POLYTOPES, NEWTON, BFGS, PROJECTIONS, EXPANDING, NEWTON_ON_FEATURES };
+enum winner { NOTHING, INCREMENTAL, POLYTOPES, NEWTON, BFGS, PUSHED, EXPANDING, NEWTON_ON_FEATURES };
 _Static_assert(FEATURES * sizeof(double) >= sizeof(pls_depth_state), "two memories overlap");
 
 static const double far_apart = PLS_NARROW_FAR; ///< of the smaller radius: gap from which there is no need to know it
 
 static const double rounding = 1e-13; ///< of the smaller radius, of distances
-static const double proof = 1e-7;     ///< of the depth: by how much a ball that proves it may be too small
+static const double near = 1e-6;  ///< of the smaller radius: what is found from a depth that is right to some digits is no other minimum
+static const double proof = 1e-7; ///< of the depth: by how much a ball that proves it may be too small
 
 typedef struct query
 {
@@ -261,14 +262,25 @@ static void ask_again(const query *q, pls_depth *d)
     if (less && pls_feature_depth(q->a, q->b, other.normal, PLS_FEATURES_LAST_STEP, memory, &finer) && finer.delta < d->delta) *d = finer;
 }
 
+/// Where something round is as good as flat its support point runs away under a normal that turns by round-off; distances outside are certain. Not for two polytopes, which nothing is gained for.
+static bool by_values(const query *q, const pls_depth *d, pls_depth *finer)
+{
+    pls_sdf_state own = {.x = {0.0, 0.0, 0.0}};
+    pls_overlap o;
+    if (!(q->a->shape->ops->smooth || q->b->shape->ops->smooth)) return false;
+    pls_sdf_depth_pushed(q->a, q->b, d->normal, d->delta, pls_scale(pls_add(d->on_a, d->on_b), 0.5), &own, &o);
+    *finer = depth_of(&o);
+    return o.converged;
+}
+
 /// The last digits: GJK and the expanding polytope only come near to what is round. Of cores apart any minimum is the distance; of others it has to be the one that was found.
 static void polish(const query *q, pls_depth *d)
 {
     pls_depth finer;
     const double size = fmin(q->a->size, q->b->size);
-    if (!pls_feature_depth(q->a, q->b, d->normal, PLS_FEATURES_NOW, q->state + FEATURES, &finer)) return;
+    if (!pls_feature_depth(q->a, q->b, d->normal, PLS_FEATURES_NOW, q->state + FEATURES, &finer) && !by_values(q, d, &finer)) return;
     const bool apart = finer.delta < q->a->shape->margin * q->a->scale + q->b->shape->margin * q->b->scale;
-    if (!apart && !(fabs(finer.delta - d->delta) < 1e-6 * size)) return;
+    if (!apart && !(fabs(finer.delta - d->delta) < near * size)) return;
     finer.iterations += d->iterations;
     finer.converged = apart || d->converged;
     if (!apart && (!d->converged || finer.delta - d->delta > proof * d->delta + rounding * size)) ask_again(q, &finer);
@@ -330,7 +342,7 @@ static pls_depth newton(const query *q)
     return bfgs(q, &d) ? d : expand(q);
 }
 
-enum { BFGS_STEPS = 10, PROJECTION_STEPS = 60, GRID_STEPS = 40 };
+enum { BFGS_STEPS = 10, GRID_STEPS = 40 };
 
 static void recall_bfgs(const query *q, pls_sdf_state *own)
 {
@@ -375,20 +387,6 @@ static bool bfgs(const query *q, pls_depth *d)
     return true;
 }
 
-static void recall_projections(const query *q, pls_depth *start)
-{
-    const double *s = q->state;
-    *start = (pls_depth){
-        .delta = s[DELTA], .normal = recalled_normal(q), .on_b = pls_posed_world(q->b, pls_vec(s[OWN], s[OWN + 1], s[OWN + 2]))};
-}
-
-static void remember_projections(const query *q, const pls_depth *d)
-{
-    pls_vec3 x = pls_posed_own(q->b, d->on_b);
-    remember(q, PROJECTIONS, d);
-    q->state[OWN] = x.x, q->state[OWN + 1] = x.y, q->state[OWN + 2] = x.z;
-}
-
 /// A ball of radius delta about a witness point lies in the other shape: no direction has less depth. In shapes that are round enough it does at any place.
 static bool is_least(const query *q, const pls_depth *d)
 {
@@ -397,31 +395,52 @@ static bool is_least(const query *q, const pls_depth *d)
     return -pls_posed_sdf(q->a, d->on_b) >= enough || -pls_posed_sdf(q->b, d->on_a) >= enough;
 }
 
-static bool projections(const query *q, const pls_depth *start, pls_depth *d)
+/// On the shapes pushed apart, from `start`. True: a minimum of the overlap, not always the least.
+static bool pushed(const query *q, const pls_depth *start, pls_sdf_state *own, pls_depth *d)
 {
     pls_overlap o;
-    pls_sdf_depth_projections(q->a, q->b, start->normal, start->delta, start->on_b, PROJECTION_STEPS, &o);
+    pls_sdf_depth_pushed(q->a, q->b, start->normal, start->delta, pls_scale(pls_add(start->on_a, start->on_b), 0.5), own, &o);
     q->counts->iterations += (uint64_t)o.iterations;
     *d = depth_of(&o);
-    if (!o.converged || !is_least(q, d)) return false;
-    remember_projections(q, d);
-    return true;
+    return o.converged;
+}
+
+static pls_depth remember_pushed(const query *q, const pls_sdf_state *own, const pls_depth *d)
+{
+    remember_bfgs(q, own, d);
+    q->state[WINNER] = PUSHED;
+    return *d;
+}
+
+/// The last digits of a depth that is right to some: differences of values, and support points that follow from them, are good to fewer digits than values are.
+static pls_depth finish(const query *q, const pls_depth *start)
+{
+    pls_sdf_state own = {.x = {0.0, 0.0, 0.0}};
+    pls_depth d;
+    if (pushed(q, start, &own, &d) && d.delta - start->delta < near * fmin(q->a->size, q->b->size)) return remember_pushed(q, &own, &d);
+    forget(q);
+    return *start;
 }
 
 static pls_depth from_sdfs(const query *q)
 {
-    pls_depth d, start;
-    if (last_winner(q) == PROJECTIONS)
+    pls_depth d, start = {.converged = false};
+    pls_sdf_state own = {.x = {0.0, 0.0, 0.0}};
+    if (last_winner(q) == PUSHED)
     {
-        recall_projections(q, &start);
-        if (projections(q, &start, &d)) return d;
+        recall_bfgs(q, &own);
+        start.normal = recalled_normal(q), start.delta = q->state[DELTA];
+        if (pushed(q, &start, &own, &d) && is_least(q, &d)) return remember_pushed(q, &own, &d);
         ++q->counts->restarts;
+        forget(q);
     }
-    if (bfgs(q, &start)) return start;
+    if (bfgs(q, &start)) return finish(q, &start);
     ++q->counts->fallbacks;
-    if (projections(q, &start, &d)) return d;
+    own = (pls_sdf_state){.x = {0.0, 0.0, 0.0}};
+    if (pushed(q, &start, &own, &d) && is_least(q, &d)) return remember_pushed(q, &own, &d);
     ++q->counts->fallbacks;
-    return expand(q);
+    start = expand(q);
+    return start.converged ? finish(q, &start) : start;
 }
 
 // ---- shapes that are not convex ---------------------------------------------------------------------------------------------------------------------------------

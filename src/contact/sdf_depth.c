@@ -4,14 +4,21 @@
 // the contact's two points and n = grad phi_A. Along n the sum is constant (it is a valley), so the point is kept in the middle and only the two directions across
 // are searched.
 //
-// Projections. Push B away along n by more than the overlap and take the nearest points of the two: a on A, then b on B, in turn, n turning along. Distances inside
-// shapes, which have ridges, are never asked for.
+// Pushed. Inside, SDFs have ridges, where that fails. So B is pushed away by s = r n, r more than the overlap, and the same is done between the two, where distances
+// are smooth. With D = phi_A + phi_B at its least, the distance there, and n' its normal, the overlap along n' is F(n') = s.n' - D. Of all n the depth's own leaves the
+// greatest D: r less the depth. Pushing along n' next comes nearer to that by r / (r + K), K the sum of the radii of curvature, and where an edge or a corner holds n it is
+// there at once. Errors of x, of n' and of gradients, which may be differences of values, all count squared in F: so it is as good as the values themselves.
 
 #include "contact/sdf_depth.h"
 
-static const double flat = 1e-7;    ///< of |grad phi_A + grad phi_B| at which BFGS is done
-static const double pushed = 0.6;   ///< sizes that B is pushed beyond touching
-static const double settled = 1e-8; ///< change of the normal at which projections are done: the depth's error is of second order
+static const double flat = 1e-7;     ///< of |grad phi_A + grad phi_B| at which BFGS is done
+static const double shortest = 1e-7; ///< step that tells of the second derivative, of the size: of a shorter one it is noise
+static const double pushed = 0.05;   ///< sizes that B is pushed beyond touching
+static const double level = 3e-8;    ///< as `flat`, of bodies pushed apart: what differences of values allow
+static const double coarse = 1e-4;   ///< as `level`, of the first turn,
+static const double share = 0.05;    ///< and of the turn that was made, of later ones
+static const double settled = 1e-7;  ///< turn of the normal at which it is done; squared it is less than round-off
+enum { MOST_TURNS = 20, MOST_DESCENTS = 12, HALVINGS = 20 };
 
 typedef struct probe
 {
@@ -19,9 +26,11 @@ typedef struct probe
     double a, b, f;
 } probe;
 
-static probe probe_at(const pls_posed *a, const pls_posed *b, pls_vec3 x)
+/// B is seen moved by s.
+static probe probe_at(const pls_posed *a, const pls_posed *b, pls_vec3 s, pls_vec3 x)
 {
-    probe p = {.x = x, .a = pls_posed_sdf(a, x), .b = pls_posed_sdf(b, x), .ga = pls_posed_gradient(a, x), .gb = pls_posed_gradient(b, x)};
+    const pls_vec3 y = pls_sub(x, s);
+    probe p = {.x = x, .a = pls_posed_sdf(a, x), .b = pls_posed_sdf(b, y), .ga = pls_posed_gradient(a, x), .gb = pls_posed_gradient(b, y)};
     p.f = p.a + p.b;
     p.g = pls_add(p.ga, p.gb);
     p.n = pls_unit(pls_sub(p.ga, p.gb));
@@ -49,105 +58,102 @@ static void update(double m[6], pls_vec3 s, pls_vec3 y)
     }
 }
 
+static bool is_known(const pls_sdf_state *s) { return s->inverse[0] + s->inverse[1] + s->inverse[2] > 0.0; }
+
 static pls_vec3 across(pls_vec3 v, pls_vec3 n) { return pls_sub(v, pls_scale(n, pls_dot(v, n))); }
 
-static void answer(const probe *p, pls_overlap *out)
+/// Down the valley to where |g| < `small`, in at most `most` steps; m is the inverse second derivative. The number of steps, `most` + 1 if they do not do.
+static int descend(const pls_posed *a, const pls_posed *b, pls_vec3 s, double small, int most, double m[6], probe *now)
 {
-    out->delta = -p->f;
-    out->normal = p->n;
-    out->on_a = pls_sub(p->x, pls_scale(p->ga, p->a));
-    out->on_b = pls_sub(p->x, pls_scale(p->gb, p->b));
+    const double scale = a->size * b->size / (a->size + b->size);
+    for (int k = 0; k < most; ++k)
+    {
+        if (pls_length(now->g) < small) return k;
+        pls_vec3 side = across(pls_scale(times(m, now->g), -1.0), now->n), centre = pls_scale(now->n, 0.5 * (now->b - now->a));
+        double down = pls_dot(now->g, side), take = 1.0;
+        if (!(down < 0.0)) side = pls_scale(across(now->g, now->n), -scale), down = pls_dot(now->g, side);
+        probe next = *now;
+        for (int halving = 0; halving < HALVINGS; ++halving, take *= 0.5)
+        {
+            next = probe_at(a, b, s, pls_add(now->x, pls_add(pls_scale(side, take), centre)));
+            if (next.f <= now->f + 1e-4 * take * down) break;
+        }
+        const double step = pls_length(pls_sub(next.x, now->x));
+        if (step > shortest * scale) update(m, pls_sub(next.x, now->x), pls_sub(next.g, now->g));
+        const bool still = step < 1e-15 * a->size;
+        *now = next;
+        if (still) break;
+    }
+    return most + 1;
+}
+
+static void begin_inverse(const pls_posed *a, const pls_posed *b, const pls_sdf_state *state, double m[6])
+{
+    const double scale = a->size * b->size / (a->size + b->size);
+    for (int k = 0; k < 6; ++k) m[k] = is_known(state) ? state->inverse[k] : k < 3 ? scale : 0.0;
 }
 
 void pls_sdf_depth_bfgs(const pls_posed *a, const pls_posed *b, pls_vec3 middle, pls_sdf_state *state, int most, pls_overlap *out)
 {
-    double scale = a->size * b->size / (a->size + b->size), m[6];
-    bool known = state->inverse[0] + state->inverse[1] + state->inverse[2] > 0.0;
-    for (int k = 0; k < 6; ++k) m[k] = known ? state->inverse[k] : k < 3 ? scale : 0.0;
-    probe now = probe_at(a, b, known ? pls_posed_world(a, state->x) : middle);
-    *out = (pls_overlap){.converged = false};
-    for (int k = 0; k < most; ++k)
-    {
-        out->iterations = k;
-        if (pls_length(now.g) < flat)
-        {
-            out->converged = true;
-            break;
-        }
-        pls_vec3 side = across(pls_scale(times(m, now.g), -1.0), now.n), centre = pls_scale(now.n, 0.5 * (now.b - now.a));
-        double down = pls_dot(now.g, side), take = 1.0;
-        if (!(down < 0.0)) side = pls_scale(across(now.g, now.n), -scale), down = pls_dot(now.g, side);
-        probe next = now;
-        for (int halving = 0; halving < 20; ++halving, take *= 0.5)
-        {
-            next = probe_at(a, b, pls_add(now.x, pls_add(pls_scale(side, take), centre)));
-            if (next.f <= now.f + 1e-4 * take * down) break;
-        }
-        update(m, pls_sub(next.x, now.x), pls_sub(next.g, now.g));
-        bool still = pls_length(pls_sub(next.x, now.x)) < 1e-15 * a->size;
-        now = next;
-        if (still) break;
-    }
-    answer(&now, out);
+    const pls_vec3 none = pls_vec(0.0, 0.0, 0.0);
+    double m[6];
+    begin_inverse(a, b, state, m);
+    probe now = probe_at(a, b, none, is_known(state) ? pls_posed_world(a, state->x) : middle);
+    const int steps = descend(a, b, none, flat, most, m, &now);
+    *out = (pls_overlap){.delta = -now.f,
+                         .normal = now.n,
+                         .on_a = pls_sub(now.x, pls_scale(now.ga, now.a)),
+                         .on_b = pls_sub(now.x, pls_scale(now.gb, now.b)),
+                         .iterations = steps < most ? steps : most - 1,
+                         .converged = steps <= most};
     state->x = pls_posed_own(a, now.x);
     for (int k = 0; k < 6; ++k) state->inverse[k] = m[k];
 }
 
-/// The nearest point of a shape. False: x is inside.
-static bool foot(const pls_posed *p, pls_vec3 x, pls_vec3 *out)
+/// Points that lie beside each other by an error: one of them, and what is `delta` along n from there. An error across n leaves a sharp edge in first order, a round side in second:
+/// so the one whose opposite lies nearer to its surface.
+static void set_opposite(const pls_posed *a, const pls_posed *b, pls_overlap *out)
 {
-    double phi = pls_posed_sdf(p, x);
-    if (!(phi > 0.0)) return false;
-    *out = pls_sub(x, pls_scale(pls_posed_gradient(p, x), phi));
-    return true;
+    const pls_vec3 through = pls_scale(out->normal, out->delta), of_a = pls_sub(out->on_a, through), of_b = pls_add(out->on_b, through);
+    if (fabs(pls_posed_sdf(b, of_a)) < fabs(pls_posed_sdf(a, of_b)))
+        out->on_b = of_a;
+    else
+        out->on_a = of_b;
 }
 
-/// The last point and step of the map b -> T(b) that the projections are, for Anderson's mixing (J. ACM 12, 1965) of two.
-typedef struct mixing
-{
-    bool known;
-    pls_vec3 image, residual;
-} mixing;
-
-/// Where to go on from b and its image: on the line through both images, where the residual would be least.
-static pls_vec3 mix(mixing *m, pls_vec3 b, pls_vec3 image)
-{
-    static const double furthest = 50.0; // times the last step
-    pls_vec3 residual = pls_sub(image, b), change = pls_sub(residual, m->residual), next = image;
-    double square = pls_dot(change, change), share = m->known && square > 0.0 ? pls_dot(residual, change) / square : 0.0;
-    if (fabs(share) < furthest) next = pls_sub(image, pls_scale(pls_sub(image, m->image), share));
-    *m = (mixing){.known = true, .image = image, .residual = residual};
-    return next;
-}
-
-void pls_sdf_depth_projections(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double delta, pls_vec3 on_b, int most,
-                               pls_overlap *out)
+void pls_sdf_depth_pushed(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double delta, pls_vec3 middle, pls_sdf_state *state,
+                          pls_overlap *out)
 {
     const double size = fmin(a->size, b->size);
-    double push = pushed * size;
-    mixing memory = {.known = false};
-    pls_vec3 from = on_b;
-    *out = (pls_overlap){.delta = delta, .normal = normal, .on_b = on_b};
-    for (int k = 0; k < most; ++k)
+    double m[6], further = pushed * size, small = coarse;
+    pls_vec3 s = pls_scale(normal, fmax(delta, 0.0) + further);
+    if (is_known(state)) middle = pls_sub(pls_posed_world(a, state->x), pls_scale(s, 0.5));
+    probe now = {.x = pls_add(middle, pls_scale(s, 0.5))};
+    begin_inverse(a, b, state, m);
+    *out = (pls_overlap){.delta = delta, .normal = normal};
+    for (int k = 0; k < MOST_TURNS && !out->converged; ++k)
     {
-        out->iterations = k + 1;
-        pls_vec3 s = pls_scale(out->normal, fmax(out->delta, 0.0) + push), on_a;
-        if (!foot(a, pls_add(from, s), &on_a) || !foot(b, pls_sub(on_a, s), &on_b)) // not yet apart
+        now = probe_at(a, b, s, now.x);
+        const int steps = descend(a, b, s, small, MOST_DESCENTS, m, &now);
+        out->iterations += 1 + steps;
+        if (now.a > 0.0 && now.b > 0.0)
         {
-            push += 0.5 * size;
-            continue;
+            const double length = pls_length(s), turned = pls_length(pls_sub(now.n, pls_scale(s, 1.0 / length)));
+            out->delta = pls_dot(s, now.n) - now.f;
+            out->normal = now.n;
+            out->on_a = pls_sub(now.x, pls_scale(pls_unit(now.ga), now.a)); // differences are not quite of length 1
+            out->on_b = pls_sub(pls_sub(now.x, pls_scale(pls_unit(now.gb), now.b)), s);
+            out->converged = steps <= MOST_DESCENTS && turned < settled && small <= level;
+            small = fmax(level, share * turned);
         }
-        pls_vec3 n = pls_unit(pls_sub(pls_add(on_b, s), on_a));
-        double turned = pls_length(pls_sub(n, out->normal)), last = out->delta;
-        out->on_a = on_a, out->on_b = on_b, out->normal = n;
-        out->delta = pls_dot(n, pls_sub(on_a, on_b));
-        // The map stands still as well: mixed points may leave n as it is on the way.
-        double moved = pls_length(pls_sub(on_b, from));
-        if (turned < settled && moved < settled * push && fabs(out->delta - last) < 1e-12 * size)
+        else // not yet apart, or between them no more
         {
-            out->converged = true;
-            return;
+            further = 2.0 * further;
+            now.x = pls_add(middle, pls_scale(out->normal, 0.5 * (fmax(out->delta, 0.0) + further)));
         }
-        from = mix(&memory, from, on_b);
+        s = pls_scale(out->normal, fmax(out->delta, 0.0) + further);
     }
+    set_opposite(a, b, out);
+    state->x = pls_posed_own(a, now.x);
+    for (int k = 0; k < 6; ++k) state->inverse[k] = m[k];
 }

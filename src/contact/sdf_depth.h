@@ -15,9 +15,10 @@ typedef struct pls_sdf_state
 /// inside it may stall, and says so by `converged`. `state` is where to start and is brought up to date; `x` of it is not used when `inverse` is 0: then from `middle`.
 void pls_sdf_depth_bfgs(const pls_posed *a, const pls_posed *b, pls_vec3 middle, pls_sdf_state *state, int most, pls_overlap *out);
 
-/// Alternating projections on the two shapes pushed apart, so that only distances outside are used: sure for any convex shapes with true outer distances, of
-/// linear convergence. From `normal` and `on_b`.
-void pls_sdf_depth_projections(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double delta, pls_vec3 on_b, int most,
-                               pls_overlap *out);
+/// The same on the two shapes pushed apart, so that only distances outside are used, the normal turning until it is that along which they are pushed: for any convex
+/// shapes with true outer distances. Exact to round-off of values. From `normal`, `delta` and `middle`, a point between the witness points; `state` as above.
+/// The minimum of the overlap found need not be the least of all.
+void pls_sdf_depth_pushed(const pls_posed *a, const pls_posed *b, pls_vec3 normal, double delta, pls_vec3 middle, pls_sdf_state *state,
+                          pls_overlap *out);
 
 #endif

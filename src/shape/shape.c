@@ -21,17 +21,19 @@ enum {
     SUPPORT_STRIDES = 60, ///< of each turn
     CLIMBS = 30           ///< of the search for the furthest point
 };
-static const double far_away = 20.0; ///< sizes from which support points are sought
-static const double remote = 1e3;    ///< sizes from which shapes that are not convex are seen first
-static const double horizon = 1e6;   ///< sizes from where the distance tells the extent of a shape to within size / 2e6
+static const double difference = 1e-7; ///< step of differences, of the size and the distance
+static const double far_away = 20.0;   ///< sizes from which support points are sought
+static const double remote = 1e3;      ///< sizes from which shapes that are not convex are seen first
+static const double horizon = 1e6;     ///< sizes from where the distance tells the extent of a shape to within size / 2e6
 
 double pls_shape_sdf(const pls_shape *shape, pls_vec3 X) { return shape->ops->sdf(shape, X); }
 
 pls_vec3 pls_shape_gradient(const pls_shape *shape, pls_vec3 X)
 {
     if (shape->ops->gradient) return shape->ops->gradient(shape, X);
-    // Central differences; far away phi is smooth over longer distances, and its round-off larger.
-    double h = 1e-5 * fabs(shape->ops->sdf(shape, X)) + 1e-6 * shape->size;
+    // Central differences. Where the curvature of the surface jumps their error is of the order of the step, elsewhere round-off over the step: this one keeps both below
+    // 1e-7. Far away phi is smooth over longer distances, and its round-off larger.
+    double h = difference * (fabs(shape->ops->sdf(shape, X)) + shape->size);
     pls_vec3 g = pls_vec(0.0, 0.0, 0.0);
     g.x = (shape->ops->sdf(shape, pls_vec(X.x + h, X.y, X.z)) - shape->ops->sdf(shape, pls_vec(X.x - h, X.y, X.z))) / (2.0 * h);
     g.y = (shape->ops->sdf(shape, pls_vec(X.x, X.y + h, X.z)) - shape->ops->sdf(shape, pls_vec(X.x, X.y - h, X.z))) / (2.0 * h);
@@ -66,10 +68,10 @@ static pls_vec3 support_from_sdf(const pls_shape *shape, pls_vec3 n)
     pls_vec3 p = begin_support(shape, n);
     for (int k = 0; k < SUPPORT_TURNS; ++k)
     {
+        const double before = pls_dot(n, p);
         pls_vec3 next = pls_shape_nearest(shape, pls_add(p, pls_scale(n, t)));
         pls_vec3 step = pls_sub(next, p);
         p = next;
-        if (pls_length(step) < 1e-12 * shape->size) break;
         // Along a flat side it comes forward by t times the angle only: further steps the same way, longer each time, as long as they lead up.
         for (int m = 0; m < SUPPORT_STRIDES; ++m)
         {
@@ -78,6 +80,7 @@ static pls_vec3 support_from_sdf(const pls_shape *shape, pls_vec3 n)
             if (!(pls_dot(n, far) > pls_dot(n, p) + 1e-14 * shape->size)) break;
             p = far;
         }
+        if (pls_dot(n, p) - before < 1e-15 * shape->size && k > 0) break; // errors of p across n count squared in the height
     }
     return p;
 }

@@ -30,7 +30,7 @@ OMP_WAIT_POLICY=passive "$program" "$scratch" >"$scratch/tables.md" || status=$?
 [ "$status" -le 1 ] || { echo "prove.sh: $program failed" >&2; exit "$status"; }
 known=$SECONDS
 
-# The narrow phase against slow oracles: most of an hour of processor time; PARTICLS_NARROW="2000 20 400 5 1" is a minute.
+# The narrow phase against slow oracles: half an hour of processor time; PARTICLS_NARROW="2000 20 400 5 1" is a minute.
 OMP_WAIT_POLICY=passive "$build/tests/prove/prove_narrow" ${PARTICLS_NARROW:-100000 200 400 5 11} >"$scratch/narrow.md" || status=1
 
 # The example as users run it, against another program.
@@ -121,11 +121,13 @@ TEXT
 
 Every pair of shapes at random and along tumbling trajectories, from gaps of 5 % of the size to overlaps of 5 % (\`tests/support/narrow_oracle.c\`). Lengths are parts of the smaller
 bounding radius. *depth*: worst error, of the overlap along the normal found, or by how much other directions may have less: over separating axes (polytopes), by bounds from both sides
-(gaps; overlaps where a ball about a witness point lies in the other body), or by branch and bound over all directions (*searched*); *of depth*: the same as part of the depth
-itself, of depths from 1e-6; *normal*: distance from one whose overlap is the depth, where that of the answer is not (a support point that jumps along a straight line makes errors of the
-normal count in first order); *points*: distance of the witness points from their surfaces; *above*: errors above 1e-8 (polytopes) or 1e-6 (others) of the depth; *wrong*: those which are so
-as parts of 5 % of the size as well, where something is round (of the size, for shapes of which nothing is known but values). Iterations, restarts (cold), fallbacks (to a slower method) and time per query are
-those of trajectories.
+(gaps; overlaps where a ball about a witness point lies in the other body), or by branch and bound over all directions (*searched*); a tenth of what is allowed is not looked into. *of depth*:
+the same as part of the depth itself, of depths from 1e-6; *normal*: distance from one whose overlap is the depth, where that of the answer is not (a support point that jumps along a straight
+line makes errors of the normal count in first order); *points*: distance of the witness points from their surfaces; *wrong*: errors of the depth above 1e-8 (polytopes) or 1e-6 (others) of the
+depth itself, or points off by more than 1e-6 of it, but for 4e-15 of the size: coordinates are up to four sizes away from zero, each rounded to 4e-16, and some ten of them make a depth.
+The *sdf-only cone* has values alone. Normals from differences of values are good to 1e-7 or so where curvature jumps; depths are not touched by that, as errors count squared in them.
+Shapes that are not convex are not in the table: the depth is that of a place, of which there may be several, and no bound over directions holds for them; pairs of a compound's
+parts are those of the table. Iterations, restarts (cold), fallbacks (to a slower method) and time per query are those of trajectories.
 TEXT
     cat "$scratch/narrow.md"
     cat <<TEXT

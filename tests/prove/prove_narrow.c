@@ -20,7 +20,6 @@ static void add(narrow_tally *to, const narrow_tally *t)
     to->depth_relative = fmax(to->depth_relative, t->depth_relative);
     to->normal = fmax(to->normal, t->normal);
     to->points = fmax(to->points, t->points);
-    to->above += t->above;
     to->wrong += t->wrong;
     to->not_finite += t->not_finite;
     to->counts.failures += t->counts.failures;
@@ -43,11 +42,11 @@ static uint64_t print(int dimension, const result *r)
 {
     const narrow_tally *t = &r->both, *w = &r->warm;
     const uint64_t wrong = t->wrong + t->not_finite;
-    printf("| %s - %s | %llu | %llu | %.1e | %.1e | %.1e | %.1e | %llu | %llu | %llu | %.2f | %llu | %llu | %.0f |\n",
+    printf("| %s - %s | %llu | %llu | %.1e | %.1e | %.1e | %.1e | %llu | %llu | %.2f | %llu | %llu | %.0f |\n",
            narrow_name(dimension, r->a), narrow_name(dimension, r->b), (unsigned long long)t->checked, (unsigned long long)t->searched,
-           t->depth, t->depth_relative, t->normal, t->points, (unsigned long long)t->above, (unsigned long long)wrong,
-           (unsigned long long)t->counts.failures, (double)w->counts.iterations / (double)w->counts.queries,
-           (unsigned long long)w->counts.restarts, (unsigned long long)w->counts.fallbacks, w->nanoseconds);
+           t->depth, t->depth_relative, t->normal, t->points, (unsigned long long)wrong, (unsigned long long)t->counts.failures,
+           (double)w->counts.iterations / (double)w->counts.queries, (unsigned long long)w->counts.restarts,
+           (unsigned long long)w->counts.fallbacks, w->nanoseconds);
     return wrong + t->counts.failures;
 }
 
@@ -61,11 +60,10 @@ static uint64_t table(int dimension, const int numbers[NUMBERS])
             if (narrow_shape(dimension, b + 1) || a != b) results[count++] = (result){.a = a, .b = b}; // but plane on plane
 #pragma omp parallel for schedule(dynamic)
     for (int k = count - 1; k >= 0; --k) measure(dimension, numbers, &results[k]); // the slow ones first
-    printf(
-        "\n%dD\n\n| pair | compared | searched | depth | of depth | normal | points | above | wrong | failures | iterations | restarts | "
-        "fallbacks | ns |\n",
-        dimension);
-    printf("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+    printf("\n%dD\n\n| pair | compared | searched | depth | of depth | normal | points | wrong | failures | iterations | restarts | "
+           "fallbacks | ns |\n",
+           dimension);
+    printf("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     for (int k = 0; k < count; ++k) bad += print(dimension, &results[k]);
     return bad;
 }

@@ -11,7 +11,7 @@
 
 static const double most_overlap = 0.1; ///< of the smaller bounding radius: 5 % of the size
 static const double least_overlap = 2e-6;
-static const double rounding = 2e-14; ///< of the size: coordinates are some sizes away from zero
+static const double rounding = 4e-15; ///< of the size: ten roundings of coordinates that are up to four sizes away from zero
 
 // ---- shapes -------------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -36,6 +36,10 @@ static const shape_row rows_3d[NARROW_SHAPES_3D] = {
     {"superquadric", &pls_superquadric_shape, SUPERQUADRIC, {0.6, 0.5, 0.45, 0.5, 0.7}, 0},
     {"polyhedron 32", &pls_polyhedron_shape, POINTS, {0.0}, 32},
     {"polyhedron 128", &pls_polyhedron_shape, POINTS, {0.0}, 128},
+    {"prism", &pls_prism_shape, POINTS, {0.0, 0.7}, 7},
+    {"rounded polyhedron 32", &pls_polyhedron_shape, POINTS, {0.1}, 32},
+    {"rounded cylinder", &pls_cylinder_shape, CYLINDER, {0.5, 0.9, 0.1}, 0},
+    {"rounded ellipsoid", &pls_ellipsoid_shape, ELLIPSOID, {0.6, 0.4, 0.3, 0.1}, 0},
     {"sdf-only cone", &sdf_only_cone, CONE, {0.5, 0.25, 0.8}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
@@ -45,6 +49,8 @@ static const shape_row rows_2d[NARROW_SHAPES_2D] = {
     {"polygon 12", &pls_polygon_shape, POINTS, {0.0}, 12},
     {"capsule", &pls_capsule_shape, POINTS, {0.3, 0.9}, 0},
     {"ellipse", &pls_ellipsoid_shape, ELLIPSOID, {0.7, 0.4, 1.0}, 0},
+    {"superellipse", &pls_superquadric_shape, SUPERQUADRIC, {0.6, 0.45, 1.0, 1.0, 0.6}, 0},
+    {"rounded polygon 12", &pls_polygon_shape, POINTS, {0.1}, 12},
     {"sdf-only cone", &sdf_only_cone, CONE, {0.5, 0.25, 0.8}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
@@ -135,7 +141,8 @@ static double dual_norm(double u, double v, double P, double *du, double *dv)
     return h;
 }
 
-static pls_vec3 own_support(const body *s, pls_vec3 n)
+/// Without the margin.
+static pls_vec3 core_support(const body *s, pls_vec3 n)
 {
     const double *v = s->row->values;
     const bool flat = s->shape->dimension == 2;
@@ -144,7 +151,8 @@ static pls_vec3 own_support(const body *s, pls_vec3 n)
         case CYLINDER:
         {
             double side = hypot(n.x, n.y);
-            return pls_vec(side > 0.0 ? v[0] * n.x / side : 0.0, side > 0.0 ? v[0] * n.y / side : 0.0, copysign(0.5 * v[1], n.z));
+            const double r = v[0] - v[2], h = 0.5 * v[1] - v[2];
+            return pls_vec(side > 0.0 ? r * n.x / side : 0.0, side > 0.0 ? r * n.y / side : 0.0, copysign(h, n.z));
         }
         case ELLIPSOID:
         {
@@ -171,6 +179,8 @@ static pls_vec3 own_support(const body *s, pls_vec3 n)
         default: return pls_vec(0.0, 0.0, 0.0);
     }
 }
+
+static pls_vec3 own_support(const body *s, pls_vec3 n) { return pls_add(core_support(s, n), pls_scale(n, s->shape->margin)); }
 
 /// The point of the body furthest along the unit vector n, in the world.
 static pls_vec3 support(const body *s, pls_vec3 n)
@@ -377,27 +387,38 @@ static double by_bounding(const body *a, const body *b, pls_vec3 known, double u
     return low;
 }
 
-/// From above: polls rings of directions about n that shrink, until F is no more than `enough`. F has kinks (a support point jumps from end to end of a straight line), where an
-/// error of the normal counts in first order.
-static double by_polling(const body *a, const body *b, pls_vec3 *n, double enough, pls_random *random)
+/// Golden section over t from -reach to reach of F along n + t e, or, if there is another direction f, of the least F along n + t e + u f over u.
+static double least_of_strip(const body *a, const body *b, pls_vec3 n, pls_vec3 e, const pls_vec3 *f, double reach, pls_vec3 *best)
 {
-    const int dimension = a->shape->dimension, ring = dimension == 2 ? 2 : 10;
-    double least = F_of(a, b, *n);
-    for (double step = 1e-5; step > 1e-16 && least > enough;)
+    enum { SECTIONS = 45 };
+    const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    double low = -reach, high = reach, least = INFINITY, value[2] = {0.0, 0.0};
+    for (int k = 0; k < SECTIONS; ++k)
     {
-        const pls_vec3 c = *n, off = fabs(c.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0);
-        const pls_vec3 u = pls_unit(pls_cross(off, c)), v = pls_cross(c, u);
-        const double before = least, phase = dimension == 2 ? 0.0 : pls_random_uniform(random);
-        for (int k = 0; k < ring; ++k)
+        const double at[2] = {high - golden * (high - low), low + golden * (high - low)};
+        for (int m = 0; m < 2; ++m)
         {
-            const double angle = 2.0 * M_PI * (k + phase) / ring, across = dimension == 2 ? 0.0 : sin(angle);
-            const pls_vec3 m = pls_unit(pls_add(c, pls_scale(pls_add(pls_scale(u, cos(angle)), pls_scale(v, across)), step)));
-            const double F = F_of(a, b, m);
-            if (F < least) least = F, *n = m;
+            pls_vec3 there = pls_add(n, pls_scale(e, at[m]));
+            if (k > 0 && !isnan(value[m])) continue; // known from the last section
+            value[m] = f ? least_of_strip(a, b, there, *f, NULL, reach, &there) : F_of(a, b, there = pls_unit(there));
+            if (value[m] < least) least = value[m], *best = there;
         }
-        if (!(least < before)) step *= 0.7;
+        if (value[0] < value[1])
+            high = at[1], value[1] = value[0], value[0] = NAN;
+        else
+            low = at[0], value[0] = value[1], value[1] = NAN;
     }
     return least;
+}
+
+/// From above: the least F near n, by golden sections within golden sections, as F has kinks (a support point jumps from end to end of a straight line), where an error of the normal
+/// counts in first order. F is convex, and so is its least over one of two coordinates as a function of the other.
+static double least_nearby(const body *a, const body *b, pls_vec3 *n)
+{
+    static const double reach = 1e-5; // by far more than normals are wrong
+    const pls_vec3 c = *n, off = fabs(c.z) < 0.7 ? pls_vec(0.0, 0.0, 1.0) : pls_vec(1.0, 0.0, 0.0);
+    const pls_vec3 u = pls_unit(pls_cross(off, c)), v = pls_cross(c, u);
+    return least_of_strip(a, b, c, u, a->shape->dimension == 2 ? NULL : &v, reach, n);
 }
 
 // ---- comparison -------------------------------------------------------------------------------------------------------------------------------------------------
@@ -413,16 +434,8 @@ static double bound_of_balls(const body *a, const body *b, pls_vec3 on_a, pls_ve
     return fmax(-pls_posed_sdf(&a->pose, on_b), -pls_posed_sdf(&b->pose, on_a));
 }
 
-/// Depths and distances, as parts of the size, below which errors are parts of this one: for polytopes rounding is all there is; where something is round 5 %, the deepest in the campaign; of values
-/// alone, of which differences are taken, the size.
-static double floor_of(const body *a, const body *b)
-{
-    if (a->row->form == CONE || b->row->form == CONE) return 1.0;
-    return a->row->form == POINTS && (b->row->form == POINTS || b->row->form == PLANE) ? 1e-6 : 0.05;
-}
-
 /// Bounds from both sides; `search`: the oracle's own lower one also where a ball proves it.
-static void compare(const body *a, const body *b, const pls_touch *t, double allowed, bool search, pls_random *random, narrow_tally *tally)
+static void compare(const body *a, const body *b, const pls_touch *t, double allowed, bool search, narrow_tally *tally)
 {
     const double size = fmin(a->pose.size, b->pose.size), delta = t->delta;
     ++tally->checked;
@@ -431,14 +444,13 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
         ++tally->not_finite;
         return;
     }
-    const double depth = fmax(fabs(delta) / size, 1e-6), most = allowed * fmax(depth, floor_of(a, b)) + rounding;
-    const double enough = 0.1 * (allowed * depth + rounding);
+    const double most = allowed * fabs(delta) / size + rounding, enough = 0.1 * most;
     pls_vec3 n = t->normal, half = pls_scale(n, 0.5 * delta), on_a = pls_add(t->point, half), on_b = pls_sub(t->point, half);
     double points = fmax(fabs(pls_posed_sdf(&a->pose, on_a)), fabs(pls_posed_sdf(&b->pose, on_b))) / size;
     double error = fmax(fabs(delta - F_of(a, b, n)) / size, fabs(pls_length(n) - 1.0));
     if (error > enough && delta < F_of(a, b, n)) // is there less nearby?
     {
-        error = (by_polling(a, b, &n, delta + enough * size, random) - delta) / size;
+        error = fabs(least_nearby(a, b, &n) - delta) / size;
         worst(&tally->normal, pls_length(pls_sub(n, t->normal)));
     }
     worst(&tally->points, points);
@@ -450,16 +462,20 @@ static void compare(const body *a, const body *b, const pls_touch *t, double all
     else if (!apart && b->row->form != PLANE)
     {
         ++tally->searched;
-        const pls_vec3 known = pls_sub(on_a, on_b);
-        error = fmax(error, (delta - (polytopes ? by_axes(a, b) : by_bounding(a, b, known, delta, enough * size))) / size + 2.0 * points);
+        const pls_vec3 known = pls_sub(on_a, on_b); // of the Minkowski difference but for what the points are off by
+        const double least = polytopes ? by_axes(a, b) : by_bounding(a, b, known, delta, enough * size) - 2.0 * points * size;
+        error = fmax(error, (delta - least) / size);
     }
     worst(&tally->depth, error);
-    tally->above += error > allowed * depth + rounding;
     if (fabs(delta) > 1e-6 * size) worst(&tally->depth_relative, error * size / fabs(delta));
-    if (error > most || (apart && points > most))
+    if (error > most || points > 1e-6 * fabs(delta) / size + rounding)
     {
         if (getenv("NARROW_VERBOSE") && tally->wrong < 5)
-            fprintf(stderr, "wrong: depth %.9g of the size, error %.3g, points %.3g\n", delta / size, error, points);
+            fprintf(stderr, "wrong: %s - %s: depth %.9g of the size, error %.3g, points %.3g, %s\n", a->row->name, b->row->name,
+                    delta / size, error, points,
+                    apart                ? "apart"
+                    : left_open < enough ? "ball"
+                                         : "searched");
         ++tally->wrong;
     }
 }
@@ -555,7 +571,7 @@ void narrow_random(int dimension, int ka, int kb, int pairs, int searched, uint6
         pls_pair_state state = {{0}};
         pls_touch t;
         query(&a, &b, &state, &t, &tally->counts);
-        compare(&a, &b, &t, narrow_allowed(dimension, ka, kb), k / 2 % searched == 0, &random, tally);
+        compare(&a, &b, &t, narrow_allowed(dimension, ka, kb), k / 2 % searched == 0, tally);
     }
 }
 
@@ -630,7 +646,7 @@ void narrow_tumble(int dimension, int ka, int kb, int trajectories, int steps, i
         for (int m = k % every; m < steps; m += every)
         {
             set_pose(&a, poses[m][0]), set_pose(&b, poses[m][1]);
-            compare(&a, &b, &answer[m], narrow_allowed(dimension, ka, kb), m / every % searched == 0, &random, tally);
+            compare(&a, &b, &answer[m], narrow_allowed(dimension, ka, kb), m / every % searched == 0, tally);
         }
     }
     tally->nanoseconds = 1e9 * spent / ((double)trajectories * steps);

@@ -12,7 +12,7 @@
 
 #include "contact/narrow_phase.h"
 
-enum { NARROW_SHAPES_3D = 11, NARROW_SHAPES_2D = 7, NARROW_MOST_SHAPES = 11 };
+enum { NARROW_SHAPES_3D = 15, NARROW_SHAPES_2D = 9, NARROW_MOST_SHAPES = 15 };
 
 /// What was seen of a pair of shapes. Lengths are parts of the smaller bounding radius.
 typedef struct narrow_tally
@@ -23,8 +23,8 @@ typedef struct narrow_tally
     double depth_relative; ///< the same as part of the depth or distance, of those above 1e-6
     double normal;         ///< distance from one whose F is the depth, where the answer's own F is not
     double points;         ///< worst distance of a witness point from its surface
-    uint64_t above;        ///< depth errors above what is allowed as part of the depth itself
-    uint64_t wrong;        ///< and as part of 5 % of the size too, where something is round (of the size, where a shape has values alone)
+    uint64_t
+        wrong; ///< errors of the depth above what is allowed as part of the depth itself, or of points above 1e-6 of it, round-off of coordinates beside
     uint64_t not_finite;
     double nanoseconds; ///< per query, along trajectories
     pls_narrow_counts counts;
