@@ -17,6 +17,9 @@
 #include "shape/builtin.h"
 #include "shape/surface_sample.h"
 
+#include <string.h>
+
+static const double point_like = 1e-10; ///< of the size squared: moments of no area
 static const double flat_places = 0.05; ///< share of the surface that makes a shape one with flat places
 
 // ---- which pairs ----------------------------------------------------------------------------------------------------------------------------------------
@@ -182,7 +185,12 @@ void pls_sampled_touch(const pls_posed *a, const pls_posed *b, const pls_narrow_
     const double blur = PLS_OVERLAP_BLUR * a->size;
     const pls_depth none = {.delta = -fmin(s.nearest, a->size), .normal = pls_vec(0.0, 0.0, 1.0), .on_a = origin, .on_b = origin};
     if (s.deepest > 0.0 && pls_overlap_touch(&s.P, options, blur, a->shape->dimension == 2, out))
+    {
         out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
+        // One piece is a point; what its moments differ by from none are rounding errors.
+        const double all = out->spread[0] + out->spread[1] + out->spread[2];
+        if (!(all > point_like * a->size * a->size)) memset(out->spread, 0, sizeof out->spread), out->lever = 0.0;
+    }
     else
         pls_overlap_none(&none, out);
     out->depth = out->reach = s.deepest > 0.0 ? s.deepest : none.delta;

@@ -18,7 +18,8 @@ void pls_touch_corners(const pls_touch *touch, pls_vec3 corner[4])
     pls_vec3 axis[2];
     double moment[3];
     spread_across(touch, axis, moment);
-    const double first = sqrt(fmax(moment[0], 0.0)), shared = first > 0.0 ? moment[2] / first : 0.0;
+    const double first = sqrt(fmax(moment[0], 0.0)), most = sqrt(fmax(moment[1], 0.0));
+    const double shared = first > 0.0 ? fmin(fmax(moment[2] / first, -most), most) : 0.0; // of a line it may be all rounding errors
     const double second = sqrt(fmax(moment[1] - shared * shared, 0.0));
     corner[0] = pls_scale(pls_add(pls_scale(axis[0], first), pls_scale(axis[1], shared)), M_SQRT2);
     corner[2] = pls_scale(axis[1], M_SQRT2 * second);

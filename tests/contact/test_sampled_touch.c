@@ -1,6 +1,7 @@
 // Contact by pieces of surfaces: forces are gradients of the energy, faces that lie on each other give what plane faces give, which pairs go by pieces.
 
 #include "contact/sampled_touch.h"
+#include "contact/touch_area.h"
 #include "shape/builtin.h"
 #include "shape/surface_sample.h"
 #include "support/numbers.h"
@@ -143,6 +144,31 @@ static void a_face_on_a_face_is_as_deep_as_it_is(void **state)
     pls_shape_free(box), pls_shape_free(floor), pls_shape_free(plate);
 }
 
+/// Of a ring that dips into the floor ever so little, one piece touches, or two or three: its area has no moments to speak of, or sensible ones.
+static void a_few_pieces_make_a_small_area(void **state)
+{
+    (void)state;
+    pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1), *floor = solids_plane(3);
+    const pls_posed ground = pls_pose(floor, pls_vec(0, 0, 0), pls_quat_identity(), 1.0);
+    int points = 0, areas = 0;
+    solids_seed(73);
+    for (int k = 0; k < 400; ++k)
+    {
+        const pls_posed a =
+            pls_pose(ring, pls_vec(0.1, 0.2, 0.4 - solids_uniform(1e-5, 2e-3)), solids_turn(solids_direction(2), 0.5 * M_PI), 1.0);
+        const pls_touch t = touch(&a, &ground, PLS_FACES_MANIFOLD);
+        if (!(t.delta > 0.0)) continue;
+        pls_vec3 corner[4];
+        pls_touch_corners(&t, corner);
+        for (int c = 0; c < 4; ++c) assert_true(pls_length(corner[c]) < 0.1);
+        points += pls_touch_is_point(&t), areas += !pls_touch_is_point(&t);
+        assert_true(pls_touch_is_point(&t) ? t.lever == 0.0 : t.lever < 0.1);
+    }
+    print_message("%d points, %d areas\n", points, areas);
+    assert_true(points > 10 && areas > 10);
+    pls_shape_free(ring), pls_shape_free(floor);
+}
+
 /// A ring that lies on the floor touches along its crest: as deep as it is, pushed in its middle, with the moments of a circle.
 static void a_ring_lies_on_its_crest(void **state)
 {
@@ -180,8 +206,11 @@ static void pairs_are_what_their_shapes_make_them(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_are_gradients_of_the_energy),    cmocka_unit_test(forces_in_the_plane_are_gradients_of_the_energy),
-        cmocka_unit_test(a_face_on_a_face_is_as_deep_as_it_is),  cmocka_unit_test(a_ring_lies_on_its_crest),
+        cmocka_unit_test(forces_are_gradients_of_the_energy),
+        cmocka_unit_test(forces_in_the_plane_are_gradients_of_the_energy),
+        cmocka_unit_test(a_face_on_a_face_is_as_deep_as_it_is),
+        cmocka_unit_test(a_few_pieces_make_a_small_area),
+        cmocka_unit_test(a_ring_lies_on_its_crest),
         cmocka_unit_test(pairs_are_what_their_shapes_make_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
