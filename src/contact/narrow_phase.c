@@ -571,6 +571,7 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     if (options->faces != PLS_FACES_POINT && pls_is_sampled_pair(a->shape, b->shape))
     {
         pls_sampled_touch(a, b, options, out);
+        out->stands = true;
         return false;
     }
     if (!admm || !by_admm(&q, options->tolerance, &d)) d = table[kind_of(a->shape)][kind_of(b->shape)](admm ? &cold : &q);
@@ -578,10 +579,8 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     // Where the pair has neither faces nor lines to speak of the point stands.
     bool recorded = false;
     if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return false;
-    if (pls_faces_touch(a, b, &d, options, record, &recorded, out) || pls_cylinder_touch(a, b, &d, options, out))
-        out->adds_up = options->faces == PLS_FACES_VOLUME;
-    else
-        pls_lines_touch(a, b, &d, out);
+    out->stands = pls_faces_touch(a, b, &d, options, record, &recorded, out) || pls_cylinder_touch(a, b, &d, options, out) ||
+                  pls_lines_touch(a, b, &d, out);
     return recorded;
 }
 
@@ -589,7 +588,7 @@ bool pls_narrow_phase_again(const pls_posed *a, const pls_posed *b, const pls_na
                             pls_touch *out, pls_narrow_counts *counts)
 {
     if (!pls_faces_touch_again(a, b, options, record, out)) return false;
-    out->adds_up = options->faces == PLS_FACES_VOLUME;
+    out->stands = true;
     ++counts->queries;
     return true;
 }

@@ -32,7 +32,7 @@ typedef struct pls_touch
     double spread
         [6]; ///< second moments of the area (line) of touch about its middle, by the area (length): xx, yy, zz, xy, xz, yz; all 0: a point [m^2]
     bool
-        adds_up; ///< flush parts of a body push with what lies over each of them, so that all act: a law of volumes; else one has to stand for the others
+        stands; ///< a law of areas or lines: its force is the gradient of an energy of its own, whatever other parts of a body do. Of points at one place the deepest acts alone
 } pls_touch;
 
 /// What a pair may keep beside its state, for speed alone: no answer depends on it but for `energy_delta`, which may be left out (faces.h), and it may be lost any time. All zero: nothing (overlap_record.h).

@@ -198,17 +198,17 @@ static bool shades(const pls_solid_list *list, const pls_contact_input *in, size
     return at_one_place(list, d, c) || has_points_of(list, in, d, c);
 }
 
-/// Which of the candidates first .. last, all of one pair of bodies, act: `next` gets their new PLS_SOLID_ state. What adds up over parts neither shades nor is shaded.
+/// Which of the candidates first .. last, all of one pair of bodies, act: `next` gets their new PLS_SOLID_ state. Areas and lines neither shade nor are shaded: a contact that came and went all at once would bring energy from nowhere.
 static void choose_acting(const pls_solid_list *list, const pls_contact_input *in, size_t first, size_t last, uint8_t *next)
 {
     for (size_t c = first; c < last; ++c) next[c - first] = list->touch[c].delta > 0.0 ? PLS_SOLID_TOUCHES : PLS_SOLID_APART;
     if (last - first < 2) return;
     for (size_t c = first; c < last; ++c)
     {
-        if (next[c - first] == PLS_SOLID_APART || list->touch[c].adds_up) continue;
+        if (next[c - first] == PLS_SOLID_APART || list->touch[c].stands) continue;
         for (size_t d = first; d < last && next[c - first] == PLS_SOLID_TOUCHES; ++d)
         {
-            if (d == c || !(list->touch[d].delta > 0.0) || list->touch[d].adds_up) continue;
+            if (d == c || !(list->touch[d].delta > 0.0) || list->touch[d].stands) continue;
             bool deeper = list->touch[d].delta > list->touch[c].delta || (list->touch[d].delta == list->touch[c].delta && d < c);
             if (deeper && shades(list, in, d, c)) next[c - first] = PLS_SOLID_SHADED;
         }
