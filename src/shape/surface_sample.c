@@ -13,10 +13,8 @@
 #include <string.h>
 
 enum {
-    PIECES = 12000, ///< of shapes that may touch with anything; the latter: 2D
+    PIECES = 12000,
     PIECES_2D = 1500,
-    FLAT_PIECES = 3000, ///< of convex shapes, whose flat places touch with many at once
-    FLAT_PIECES_2D = 500,
     FIRST_SIDE = 24, ///< cells along the longest edge of the bounds when nothing is known
     MOST_SIDE = 160,
     TRIES = 4,
@@ -331,9 +329,7 @@ pls_status pls_shape_need_sample(const pls_shape *shape)
 {
     if (shape->sample || shape->ops->unbounded || shape->part_count > 0 || !(shape->mass.volume > 0.0)) return PLS_OK;
     pls_surface_sample *made;
-    const bool plane = shape->dimension == 2;
-    const size_t count = shape->convex ? (plane ? FLAT_PIECES_2D : FLAT_PIECES) : (plane ? PIECES_2D : PIECES);
-    PLS_TRY(pls_surface_sample_make(shape, count, &made));
+    PLS_TRY(pls_surface_sample_make(shape, shape->dimension == 2 ? PIECES_2D : PIECES, &made));
     memcpy((char *)(uintptr_t)shape + offsetof(pls_shape, sample), &made, sizeof made); // kept with the shape, though it does not change it
     return PLS_OK;
 }
