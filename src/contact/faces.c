@@ -94,10 +94,6 @@ static bool is_ellipsoid(const pls_shape *s, double half[3])
 
 // ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
 
-static bool is_wall(const pls_posed *b) { return b->shape->ops->unbounded; }
-
-static double size_of(const pls_posed *a, const pls_posed *b) { return is_wall(b) ? a->size : fmax(a->size, b->size); }
-
 static bool finish(pls_overlap_integrals *P, pls_vec3 origin, double size, const pls_posed *a, const pls_narrow_options *options,
                    pls_touch *out)
 {
@@ -133,7 +129,7 @@ static void take_wall(const pls_posed *a, const pls_posed *b, pls_vec3 *origin, 
 static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                         pls_overlap_record *record, bool *recorded, pls_touch *out)
 {
-    const bool facet = pls_is_facet(b->shape), wall = is_wall(b) || facet;
+    const bool facet = pls_is_facet(b->shape), wall = pls_is_half_space(b) || facet;
     pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5), n = depth->normal;
     double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS], reach_b = 0.0;
     pls_near_body A, B;
@@ -144,7 +140,7 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
     }
     else
         reach_b = pls_near_heights(b, start_of(b, origin, pls_scale(n, -1.0)), pls_scale(n, -1.0), height_b);
-    const double reach_a = pls_near_heights(a, start_of(a, origin, n), n, height_a), size = size_of(a, b);
+    const double reach_a = pls_near_heights(a, start_of(a, origin, n), n, height_a), size = pls_pair_size(a, b);
     const pls_slab between = pls_slab_of(origin, n, height_a, wall ? NULL : height_b, reach_a, reach_b, size);
     if (!(between.deep > least_depth * a->size)) return false;
     pls_recalled recalled;
@@ -164,7 +160,7 @@ bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *de
                      pls_overlap_record *record, bool *recorded, pls_touch *out)
 {
     double half[3];
-    const bool plane = is_wall(b), wall = plane || pls_is_facet(b->shape);
+    const bool plane = pls_is_half_space(b), wall = plane || pls_is_facet(b->shape);
     const bool faces = has_faces(a->shape) && (wall || (has_faces(b->shape) && a->shape->margin == 0.0 && b->shape->margin == 0.0));
     const bool cap = plane && options->faces == PLS_FACES_VOLUME && is_ellipsoid(a->shape, half);
     *recorded = false;
@@ -187,7 +183,7 @@ bool pls_faces_touch_again(const pls_posed *a, const pls_posed *b, const pls_nar
 {
     pls_recalled r;
     if (!pls_overlap_again(a, b, options->faces == PLS_FACES_MANIFOLD, record, &r) || !(r.deep > least_depth * a->size)) return false;
-    if (!finish(&r.P, r.origin, size_of(a, b), a, options, out)) return false;
+    if (!finish(&r.P, r.origin, pls_pair_size(a, b), a, options, out)) return false;
     record->normal = out->normal;
     out->depth = INFINITY, out->reach = r.deep;
     return true;

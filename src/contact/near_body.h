@@ -5,6 +5,14 @@
 #include "contact/overlap.h"
 #include "contact/posed.h"
 
+static inline bool pls_is_half_space(const pls_posed *p) { return p->shape->ops->unbounded; }
+
+/// The larger of two bodies' sizes, of a half-space's partner that one's [m].
+static inline double pls_pair_size(const pls_posed *a, const pls_posed *b)
+{
+    return pls_is_half_space(b) ? a->size : fmax(a->size, b->size);
+}
+
 /// The overlap along a direction n from A to B, whichever: of their vertices the heights above the origin, towards the other body, and from where on faces matter. Nothing of
 /// the overlap lies under a face from which it is further than its extent.
 typedef struct pls_slab

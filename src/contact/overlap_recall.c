@@ -10,8 +10,6 @@ static const double record_margin = 1e-9;
 /// Of the depth: faces are in a record from this much further down than need be, so that it lasts.
 static const double record_slack = 0.5;
 
-static bool is_wall(const pls_posed *b) { return b->shape->ops->unbounded; }
-
 static bool outline_is_listed(const pls_polytope *t, uint64_t faces, const uint32_t *outline)
 {
     for (; faces; faces &= faces - 1)
@@ -32,17 +30,15 @@ typedef struct posed_record
 /// Bodies about A's position; of the margin of the bodies.
 static pls_record_bodies bodies_of(const pls_posed *a, const pls_posed *b, double size)
 {
-    pls_record_bodies c = {.body = {a, b}, .wall = is_wall(b), .margin = record_margin * size};
+    pls_record_bodies c = {.body = {a, b}, .wall = pls_is_half_space(b), .margin = record_margin * size};
     if (c.wall) c.front = pls_posed_gradient(b, b->position);
     c.start[0] = pls_scale(c.front, -a->shape->margin * a->scale), c.start[1] = pls_sub(b->position, a->position);
     return c;
 }
 
-static double size_of(const pls_posed *a, const pls_posed *b) { return is_wall(b) ? a->size : fmax(a->size, b->size); }
-
 static posed_record pose_record(const pls_posed *a, const pls_posed *b, const pls_overlap_record *record)
 {
-    posed_record p = {.body = {a, b}, .record = record, .size = size_of(a, b)};
+    posed_record p = {.body = {a, b}, .record = record, .size = pls_pair_size(a, b)};
     p.about = bodies_of(a, b, p.size);
     const pls_vec3 shift = pls_record_origin(&p.about, record);
     for (int k = 0; k < 2; ++k) p.about.start[k] = pls_sub(p.about.start[k], shift);
@@ -103,7 +99,7 @@ static bool has_in_view(const posed_record *p, const pls_slab *s)
 
 static bool can_have_record(const pls_posed *a, const pls_posed *b)
 {
-    return pls_has_record(a->shape) && (is_wall(b) || pls_has_record(b->shape));
+    return pls_has_record(a->shape) && (pls_is_half_space(b) || pls_has_record(b->shape));
 }
 
 bool pls_overlap_by_record(const pls_posed *a, const pls_posed *b, const pls_slab *s, bool squares, pls_overlap_record *record,

@@ -87,10 +87,7 @@ pls_posed pls_posed_part(const pls_posed *whole, uint32_t part)
 
 // ---- candidates -------------------------------------------------------------------------------------------------------------------------------------------
 
-static bool is_convex_part(const pls_shape *whole, uint32_t part)
-{
-    return whole->part_count > 0 ? whole->part[part].shape->convex : whole->convex;
-}
+static const pls_shape *shape_of_part(const pls_shape *whole, uint32_t part) { return whole->part_count ? whole->part[part].shape : whole; }
 
 static pls_status missing_law(const pls_solid_source *s, uint32_t i, uint32_t j)
 {
@@ -107,8 +104,8 @@ static pls_status check_solver(const pls_solid_source *s, const pls_law *law, ui
 {
     if (law->narrow.solver != PLS_SOLVER_ADMM) return PLS_OK;
     const pls_bodies *b = s->bodies;
-    const bool first = !is_convex_part(s->shape[b->kind[i].shape], part_i);
-    if (!first && is_convex_part(s->shape[b->kind[j].shape], part_j)) return PLS_OK;
+    const bool first = !shape_of_part(s->shape[b->kind[i].shape], part_i)->convex;
+    if (!first && shape_of_part(s->shape[b->kind[j].shape], part_j)->convex) return PLS_OK;
     const pls_body_kind *bad = &b->kind[first ? i : j];
     const char *a = s->laws->material[b->kind[i].material].name, *c = s->laws->material[b->kind[j].material].name;
     return pls_fail(
@@ -138,8 +135,6 @@ static bool lets_go(const pls_shape *shape)
     int place = shape->ops->unbounded && shape->part_count == 0 ? pls_parameter_find(shape->ops->parameters, "lets_go") : -1;
     return place >= 0 && shape->values[place] > 0.5;
 }
-
-static const pls_shape *shape_of_part(const pls_shape *shape, uint32_t part) { return shape->part_count ? shape->part[part].shape : shape; }
 
 /// Contacts that go by pieces of surfaces need those of both.
 static pls_status sample_parts(const pls_shape *a, const pls_shape *b)

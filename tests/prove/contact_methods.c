@@ -12,7 +12,7 @@
 #include "base/random.h"
 #include "shape/builtin.h"
 #include "support/numbers.h"
-#include "support/sdf_only.h"
+#include "support/values_alone.h"
 #include "support/two_bodies.h"
 #include "support/verify.h"
 
@@ -73,7 +73,7 @@ static const example examples[EXAMPLES] = {
     [POLYHEDRON] = {"polyhedron", &pls_polyhedron_shape, 3, {0.0}, HULL_POINTS},
     [PRISM] = {"prism", &pls_prism_shape, 3, {[1] = 1.2}, 7},
     [COMPOUND] = {"compound", &pls_compound_shape, 3, {0.0}, 0},
-    [SDF_ONLY] = {"SDF only", &sdf_only_cone, 3, {0.6, 0.3, 0.8}, 0},
+    [SDF_ONLY] = {"SDF only", &values_cone, 3, {0.6, 0.3, 0.8}, 0},
     [PLANE] = {"plane", &pls_plane_shape, 3, {0.0}, 0},
     [DISC] = {"disc", &pls_disc_shape, 2, {0.7}, 0},
     [RECTANGLE] = {"rectangle", &pls_box_shape, 2, {0.5, 0.7, 1.0, 0.0}, 0},

@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "support/numbers.h"
+#include "support/values_alone.h"
 
 #include <particls/memory.h>
 
@@ -16,23 +17,6 @@
 #include <cmocka.h>
 
 enum { MOST = 600 };
-
-static double torus_sdf(const pls_shape *shape, pls_vec3 X)
-{
-    (void)shape;
-    return hypot(hypot(X.x, X.y) - 1.0, X.z) - 0.25;
-}
-
-static pls_status torus_mass(const pls_shape *shape, pls_mass_properties *out)
-{
-    (void)shape;
-    *out = (pls_mass_properties){.volume = 2.0 * M_PI * M_PI * 0.0625, .inertia = {1.0, 1.0, 1.0}}; // is not asked for
-    return PLS_OK;
-}
-
-static const pls_parameter none[] = {{.name = NULL}};
-static const pls_shape_ops torus = {
-    .api_version = PLS_API_VERSION, .name = "torus", .parameters = none, .in_3d = true, .sdf = torus_sdf, .mass_properties = torus_mass};
 
 static pls_shape *make(const pls_shape_ops *ops, int dimension, const double *values, size_t count)
 {
@@ -104,7 +88,7 @@ static void nodes_are_spread_evenly(void **state)
     pls_shape *shape = make(&pls_sphere_shape, 3, COUNTED(ball));
     check(shape, 4.0 * M_PI, on_sphere);
     pls_shape_free(shape);
-    shape = make(&torus, 3, NULL, 0);
+    shape = make(&values_ring, 3, NUMBERS(1.0, 0.25));
     check(shape, 4.0 * M_PI * M_PI * 0.25, on_torus);
     pls_shape_free(shape);
     shape = make(&pls_box_shape, 2, COUNTED(square));

@@ -2,7 +2,7 @@
 
 #include "base/random.h"
 #include "support/numbers.h"
-#include "support/sdf_only.h"
+#include "support/values_alone.h"
 
 const char *grain_name(enum grain_kind kind)
 {
@@ -47,7 +47,7 @@ pls_shape_id grain_shape(const verify_scene *scene, enum grain_kind kind)
             return scene->dimension == 3 ? verify_add_shape(scene, "cylinder", NUMBERS(0.26, 0.6, 0.0))
                                          : verify_add_shape(scene, "box", NUMBERS(0.26, 0.3, 0.2, 0.0));
         case GRAIN_PRISM: return column(scene);
-        case GRAIN_CONE: return verify_use_shape(scene, &sdf_only_cone, &(pls_shape_input){VALUES(cone)});
+        case GRAIN_CONE: return verify_use_shape(scene, &values_cone, &(pls_shape_input){VALUES(cone)});
         default: return verify_add_dumbbell(scene, 0.22, 0.46);
     }
 }

@@ -3,7 +3,7 @@
 #include "base/random.h"
 #include "shape/builtin.h"
 #include "support/numbers.h"
-#include "support/sdf_only.h"
+#include "support/values_alone.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,7 +40,7 @@ static const shape_row rows_3d[NARROW_SHAPES_3D] = {
     {"rounded polyhedron 32", &pls_polyhedron_shape, POINTS, {0.1}, 32},
     {"rounded cylinder", &pls_cylinder_shape, CYLINDER, {0.5, 0.9, 0.1}, 0},
     {"rounded ellipsoid", &pls_ellipsoid_shape, ELLIPSOID, {0.6, 0.4, 0.3, 0.1}, 0},
-    {"sdf-only cone", &sdf_only_cone, CONE, {0.5, 0.25, 0.8}, 0},
+    {"sdf-only cone", &values_cone, CONE, {0.5, 0.25, 0.8}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
 static const shape_row rows_2d[NARROW_SHAPES_2D] = {
@@ -51,7 +51,7 @@ static const shape_row rows_2d[NARROW_SHAPES_2D] = {
     {"ellipse", &pls_ellipsoid_shape, ELLIPSOID, {0.7, 0.4, 1.0}, 0},
     {"superellipse", &pls_superquadric_shape, SUPERQUADRIC, {0.6, 0.45, 1.0, 1.0, 0.6}, 0},
     {"rounded polygon 12", &pls_polygon_shape, POINTS, {0.1}, 12},
-    {"sdf-only cone", &sdf_only_cone, CONE, {0.5, 0.25, 0.8}, 0},
+    {"sdf-only cone", &values_cone, CONE, {0.5, 0.25, 0.8}, 0},
     {"plane", &pls_plane_shape, PLANE, {0.0}, 0},
 };
 

@@ -45,9 +45,21 @@ static double corner(const pls_shape *s, pls_vec3 X)
     return fmin(left, below);
 }
 
+/// Least distance from the balls, whose radii shrink along the axis.
+static double cone(const pls_shape *shape, pls_vec3 X)
+{
+    const double low = shape->values[0], length = shape->values[2];
+    double axial = shape->dimension == 2 ? X.y : X.z, radial = shape->dimension == 2 ? fabs(X.x) : hypot(X.x, X.y);
+    double slope = (low - shape->values[1]) / length, along = axial - radial * slope / sqrt(1.0 - slope * slope);
+    // The ball that is nearest: where the surface's normal, of slope `slope` to the radius, leads back to the axis.
+    double t = fmin(fmax(along, 0.0), length);
+    return hypot(radial, axial - t) - (low - slope * t);
+}
+
 static const pls_parameter ring_numbers[] = {NUMBER("ring"), NUMBER("tube"), {.name = NULL}};
 static const pls_parameter box_numbers[] = {NUMBER("x"), NUMBER("y"), NUMBER("z"), NUMBER("rounding"), {.name = NULL}};
 static const pls_parameter drum_numbers[] = {NUMBER("radius"), NUMBER("half_length"), {.name = NULL}};
+static const pls_parameter cone_numbers[] = {NUMBER("low"), NUMBER("high"), NUMBER("length"), {.name = NULL}};
 static const pls_parameter radius[] = {NUMBER("radius"), {.name = NULL}};
 static const pls_parameter edge[] = {NUMBER("a"), {.name = NULL}};
 
@@ -66,3 +78,10 @@ const pls_shape_ops values_ball = {
     .api_version = PLS_API_VERSION, .name = "values_ball", .parameters = radius, .in_2d = true, .in_3d = true, .convex = true, .sdf = ball};
 const pls_shape_ops values_corner = {
     .api_version = PLS_API_VERSION, .name = "values_corner", .parameters = edge, .in_2d = true, .sdf = corner};
+const pls_shape_ops values_cone = {.api_version = PLS_API_VERSION,
+                                   .name = "sdf-only cone",
+                                   .parameters = cone_numbers,
+                                   .in_2d = true,
+                                   .in_3d = true,
+                                   .convex = true,
+                                   .sdf = cone};

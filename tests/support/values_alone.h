@@ -12,6 +12,8 @@ extern const pls_shape_ops values_box;
 extern const pls_shape_ops values_drum;
 /// A ball (2D: disc). Numbers: radius. Convex.
 extern const pls_shape_ops values_ball;
+/// A cone between two balls, convex: {radius of the ball at the origin, radius of the other, smaller one, distance of the other along z (2D: y)}.
+extern const pls_shape_ops values_cone;
 /// 2D: three quarters of a square about the origin, of edge 2 a, the first quadrant missing. Numbers: a.
 extern const pls_shape_ops values_corner;
 
