@@ -17,6 +17,8 @@
 #include "math/gauss.h"
 #include "shape/builtin.h"
 
+#include <string.h>
+
 enum {
     FACES = 64,          ///< most of a body
     CORNERS = 2 * FACES, ///< room for a polygon: it has four corners, and one more for each face that cuts it
@@ -327,13 +329,14 @@ static double lever_of(double small, double large)
 
 /// Spread in the plane of touch and lever. Turning about its own axis brings no part of a cylinder nearer: dashpots must not see that as rocking, or they would brake what
 /// rolls. Of turning about `ahead`, the axis' direction in the plane of touch, the cosine of axis and normal is left, by which what lies across counts.
-static void take_area(pls_touch *t)
+void pls_cylinder_area(pls_vec3 axis, pls_touch *t)
 {
-    const pls_vec3 n = t->normal, axis = pls_vec(0.0, 0.0, 1.0), level = pls_sub(axis, pls_scale(n, n.z));
-    const pls_vec3 ahead = pls_length(level) > 1e-8 ? pls_unit(level) : pls_unit(pls_sub(pls_vec(1.0, 0.0, 0.0), pls_scale(n, n.x)));
+    const pls_vec3 n = t->normal, level = pls_sub(axis, pls_scale(n, pls_dot(axis, n)));
+    const pls_vec3 any = fabs(n.x) < 0.5 ? pls_vec(1.0, 0.0, 0.0) : pls_vec(0.0, 1.0, 0.0);
+    const pls_vec3 ahead = pls_length(level) > 1e-8 ? pls_unit(level) : pls_unit(pls_sub(any, pls_scale(n, pls_dot(any, n))));
     const pls_vec3 across = pls_cross(n, ahead), of_ahead = pls_second_along(t->spread, ahead),
                    of_across = pls_second_along(t->spread, across);
-    const double cosine = fabs(n.z), aa = fmax(pls_dot(ahead, of_ahead), 0.0), cc = fmax(pls_dot(across, of_across), 0.0);
+    const double cosine = fabs(pls_dot(axis, n)), aa = fmax(pls_dot(ahead, of_ahead), 0.0), cc = fmax(pls_dot(across, of_across), 0.0);
     const double ac = pls_dot(across, of_ahead), mean = 0.5 * (aa + cc), apart = sqrt(0.25 * (aa - cc) * (aa - cc) + ac * ac);
     t->lever = lever_of(fmax(mean - apart, 0.0), mean + apart);
     const double s[3] = {aa, cosine * cosine * cc, cosine * ac};
@@ -346,75 +349,105 @@ static void take_area(pls_touch *t)
     }
 }
 
-/// S in axes of which e are the columns.
-static void turn_spread(const pls_vec3 e[3], double s[6])
+static pls_vec3 turned(const pls_vec3 e[3], pls_vec3 x)
 {
-    pls_vec3 turned[3];
+    return pls_add(pls_add(pls_scale(e[0], x.x), pls_scale(e[1], x.y)), pls_scale(e[2], x.z));
+}
+
+/// From axes of which e are the columns.
+static void turn_integrals(const pls_vec3 e[3], pls_overlap_integrals *P)
+{
+    double *s = P->second;
     const pls_vec3 row[3] = {{s[0], s[3], s[4]}, {s[3], s[1], s[5]}, {s[4], s[5], s[2]}};
-    for (int k = 0; k < 3; ++k)
-        turned[k] = pls_add(pls_add(pls_scale(e[0], row[k].x), pls_scale(e[1], row[k].y)), pls_scale(e[2], row[k].z));
+    pls_vec3 half[3];
+    for (int k = 0; k < 3; ++k) half[k] = turned(e, row[k]);
     double out[6] = {0.0};
     for (int k = 0; k < 3; ++k)
     {
-        out[0] += e[k].x * turned[k].x, out[1] += e[k].y * turned[k].y, out[2] += e[k].z * turned[k].z;
-        out[3] += e[k].x * turned[k].y, out[4] += e[k].x * turned[k].z, out[5] += e[k].y * turned[k].z;
+        out[0] += e[k].x * half[k].x, out[1] += e[k].y * half[k].y, out[2] += e[k].z * half[k].z;
+        out[3] += e[k].x * half[k].y, out[4] += e[k].x * half[k].z, out[5] += e[k].y * half[k].z;
     }
     for (int k = 0; k < 6; ++k) s[k] = out[k];
+    pls_vec3 *const vectors[] = {
+        &P->first, &P->area, &P->area_moment, &P->by_depth.force, &P->by_depth.torque, &P->by_its_square.force, &P->by_its_square.torque};
+    for (size_t k = 0; k < sizeof vectors / sizeof *vectors; ++k) *vectors[k] = turned(e, *vectors[k]);
+}
+
+/// The core of a cylinder.
+typedef struct core
+{
+    double margin, radius, half;
+} core;
+
+static core core_of(const pls_posed *a)
+{
+    const double margin = a->shape->margin * a->scale;
+    return (core){margin, a->shape->values[0] * a->scale - margin, 0.5 * a->shape->values[1] * a->scale - margin};
+}
+
+/// So thin a core is soon below a wall as a whole, and then nothing pushes back.
+static bool is_thin(core c) { return c.margin > c.radius || c.margin > c.half; }
+
+/// Integrals over what of A is in q, whose planes are about A's position in the world; about the point of A's side next to `on_a` towards `towards`, which goes to `origin`.
+static void overlap_of(cylinder *q, const pls_posed *a, core c, pls_vec3 towards, pls_vec3 on_a, pls_vec3 *origin, pls_overlap_integrals *P)
+{
+    const pls_vec3 lean = pls_sub(towards, pls_scale(a->z, pls_dot(a->z, towards)));
+    pls_vec3 e[3] = {pls_length(lean) > 1e-8 ? pls_unit(lean) : a->x, {0.0, 0.0, 0.0}, a->z}; // of a cylinder that stands any side will do
+    e[1] = pls_cross(e[2], e[0]);
+    const double along = fmax(fmin(pls_dot(a->z, pls_sub(on_a, a->position)), c.half), -c.half);
+    const pls_vec3 start = pls_add(pls_scale(e[0], c.radius), pls_scale(e[2], along));
+    for (int k = 0; k < q->planes; ++k)
+    {
+        const pls_vec3 n = q->plane[k].normal;
+        q->plane[k] =
+            (pls_half_space){pls_vec(pls_dot(n, e[0]), pls_dot(n, e[1]), pls_dot(n, e[2])), q->plane[k].offset - pls_dot(n, start)};
+    }
+    q->radius = c.radius, q->low = -c.half - along, q->high = c.half - along;
+    find_places(q);
+    integrate(q, P);
+    turn_integrals(e, P);
+    *origin = pls_add(a->position, start);
+}
+
+/// Points move to half the depth, as those of other contacts: where they are in between does not matter to the normal force, but friction has its lever there.
+static void move_to_middle(double below, double depth, pls_touch *t)
+{
+    const pls_vec3 deeper = pls_scale(t->normal, 0.5 * depth - below);
+    t->point = pls_add(t->point, deeper), t->middle = pls_add(t->middle, deeper);
 }
 
 /// A is the cylinder.
 static bool cylinder_on(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options, pls_touch *out)
 {
-    const bool plane = b->shape->ops->unbounded, facet = !plane && pls_is_facet(b->shape);
-    const double margin = a->shape->margin * a->scale, R = a->shape->values[0] * a->scale - margin,
-                 half = 0.5 * a->shape->values[1] * a->scale - margin;
-    if (!plane && !facet && (margin > 0.0 || !has_faces(b->shape))) return false;
-    if (margin > R || margin > half)
-        return false; // so thin a core is soon below a wall as a whole, and then nothing pushes back: the point stands
-    cylinder q = {.radius = R, .faces = 1, .planes = 1};
-    pls_vec3 towards = depth->normal;
-    if (plane)
+    const bool ground = b->shape->ops->unbounded;
+    const core c = core_of(a);
+    if (!ground && (c.margin > 0.0 || !has_faces(b->shape))) return false;
+    if (is_thin(c)) return false;
+    cylinder q = {.faces = 1, .planes = 1};
+    pls_half_space plane[FACES];
+    pls_vec3 towards = depth->normal, origin = a->position;
+    if (ground)
     {
         const pls_vec3 up = pls_posed_gradient(b, b->position);
-        q.plane[0] = (pls_half_space){up, pls_dot(up, pls_sub(b->position, a->position))};
+        q.plane[0] = (pls_half_space){up, pls_dot(up, pls_sub(b->position, a->position)) + c.margin};
+        towards = pls_scale(up, -1.0);
     }
-    else if (facet)
-        q.planes = pls_facet_prism(b, a->position, a->position, q.plane);
     else
-        q.faces = q.planes = planes_of_body(a, b, depth->delta, R, half, q.plane);
-    if (plane || facet) q.plane[0].offset += margin, towards = pls_scale(q.plane[0].normal, -1.0);
-
-    const pls_vec3 lean = pls_sub(towards, pls_scale(a->z, pls_dot(a->z, towards)));
-    pls_vec3 e[3] = {pls_length(lean) > 1e-8 ? pls_unit(lean) : a->x, {0.0, 0.0, 0.0}, a->z}; // of a cylinder that stands any side will do
-    e[1] = pls_cross(e[2], e[0]);
-    const double along = fmax(fmin(pls_dot(a->z, pls_sub(depth->on_a, a->position)), half), -half);
-    const pls_vec3 start = pls_add(pls_scale(e[0], R), pls_scale(e[2], along));
-    for (int k = 0; k < q.planes; ++k)
-    {
-        const pls_vec3 n = q.plane[k].normal;
-        q.plane[k] = (pls_half_space){pls_vec(pls_dot(n, e[0]), pls_dot(n, e[1]), pls_dot(n, e[2])), q.plane[k].offset - pls_dot(n, start)};
-    }
-    q.low = -half - along, q.high = half - along;
+        q.faces = q.planes = planes_of_body(a, b, depth->delta, c.radius, c.half, q.plane);
+    memcpy(plane, q.plane, (size_t)q.planes * sizeof *plane);
 
     pls_overlap_integrals P;
-    find_places(&q);
-    integrate(&q, &P);
+    overlap_of(&q, a, c, towards, depth->on_a, &origin, &P);
     pls_touch t = {.delta = 0.0};
     if (depth->delta <= 0.0 || !pls_overlap_touch(&P, options, PLS_OVERLAP_BLUR * a->size, false, &t))
         pls_overlap_none(depth, &t);
     else
     {
-        take_area(&t);
-        turn_spread(e, t.spread);
-        // To half the depth, as other contacts: where it is in between does not matter to the normal force, but friction has its lever there.
+        t.point = pls_add(t.point, origin), t.middle = pls_add(t.middle, origin);
+        pls_cylinder_area(a->z, &t);
         double below = INFINITY;
-        for (int k = 0; k < q.faces; ++k) below = fmin(below, depth_at(&q.plane[k], t.point));
-        const pls_vec3 deeper = pls_scale(t.normal, 0.5 * depth->delta + margin - below);
-        t.point = pls_add(t.point, deeper), t.middle = pls_add(t.middle, deeper);
-        const pls_vec3 origin = pls_add(a->position, start), n = t.normal, x = t.point, m = t.middle;
-        t.normal = pls_add(pls_add(pls_scale(e[0], n.x), pls_scale(e[1], n.y)), pls_scale(e[2], n.z));
-        t.point = pls_add(origin, pls_add(pls_add(pls_scale(e[0], x.x), pls_scale(e[1], x.y)), pls_scale(e[2], x.z)));
-        t.middle = pls_add(origin, pls_add(pls_add(pls_scale(e[0], m.x), pls_scale(e[1], m.y)), pls_scale(e[2], m.z)));
+        for (int k = 0; k < q.faces; ++k) below = fmin(below, depth_at(&plane[k], pls_sub(t.point, a->position)));
+        move_to_middle(below - c.margin, depth->delta, &t);
     }
     t.depth = t.reach = depth->delta;
     *out = t;
@@ -432,4 +465,18 @@ bool pls_cylinder_touch(const pls_posed *a, const pls_posed *b, const pls_depth 
     if (!cylinder_on(b, a, &other, options, out)) return false;
     out->normal = pls_scale(out->normal, -1.0);
     return true;
+}
+
+bool pls_is_thick_cylinder(const pls_posed *a) { return a->shape->ops == &pls_cylinder_shape && !is_thin(core_of(a)); }
+
+bool pls_cylinder_behind(const pls_posed *a, const pls_prism *prism, pls_vec3 *origin, pls_overlap_integrals *P)
+{
+    const core c = core_of(a);
+    const pls_vec3 shift = pls_sub(a->position, *origin);
+    cylinder q = {.faces = prism->faces, .planes = prism->planes};
+    for (int k = 0; k < q.planes; ++k)
+        q.plane[k] = (pls_half_space){prism->plane[k].normal, prism->plane[k].offset - pls_dot(prism->plane[k].normal, shift)};
+    q.plane[0].offset += c.margin;
+    overlap_of(&q, a, c, pls_scale(prism->plane[0].normal, -1.0), *origin, origin, P);
+    return P->volume > 0.0;
 }

@@ -18,7 +18,8 @@
 // The wrench of an overlap that is not flat is a force on a line and a couple about it: turning one face on the other changes their common outline. `twist` is that couple
 // by the force, some tenths of the depth at most. Undamped collisions keep energy to 1e-7 with it (to 1e-3 if it is left out; the point law: 1e-3, kn delta at the
 // centroid: a tenth and more).
-// Walls (half-spaces, triangles and segments of meshes) count by their own d alone, in place of the half sum: buoyancy. A triangle is the prism behind it.
+// Walls (half-spaces, triangles and segments of meshes) count by their own d alone, in place of the half sum: buoyancy. A triangle is the prism behind it, and all triangles that
+// a body lies over make one contact: wall_touch.c.
 // Rounded bodies on walls: the core, moved by its margin along the wall's normal, which is exact as well. Two bodies of which one is rounded: lines.c. Here moving the cores
 // along the normal of the penetration depth is not conservative where that turns (rounded boxes in random collisions lose or gain some 1e-3 of their energy, at worst
 // several percent), while the integral over rounded edges has no closed form.
@@ -41,21 +42,10 @@ static const double least_depth = 1e-11;
 
 // ---- bodies -------------------------------------------------------------------------------------------------------------------------------------------------
 
-static bool has_faces(const pls_shape *s)
+bool pls_has_faces(const pls_shape *s)
 {
     return s->convex && s->polytope && s->polytope->face_count > 2 && s->polytope->face_count <= PLS_MOST_FACES &&
            s->polytope->vertex_count <= PLS_MOST_CORNERS;
-}
-
-static pls_vec3 centre_of(const pls_posed *p) { return pls_posed_world(p, p->shape->mass.centre); }
-
-/// The prism behind a facet, its front towards `centre`.
-static void take_facet(const pls_posed *p, pls_vec3 origin, pls_vec3 centre, pls_near_body *out)
-{
-    pls_half_space plane[4];
-    out->faces = 1, out->planes = pls_facet_prism(p, origin, centre, plane);
-    out->face[0].outline = NULL;
-    for (int k = 0; k < out->planes; ++k) out->face[k].plane = plane[k];
 }
 
 /// Half-space and ellipsoid: the cap, stretched to that of a unit sphere. `front` out of the half-space.
@@ -108,35 +98,31 @@ static pls_vec3 start_of(const pls_posed *p, pls_vec3 origin, pls_vec3 n)
     return pls_add(pls_sub(p->position, origin), pls_scale(n, p->shape->margin * p->scale));
 }
 
-/// B as a half-space or the prism behind a facet, and the origin moved to its front, which has no share in moments about a point on it.
-static void take_wall(const pls_posed *a, const pls_posed *b, pls_vec3 *origin, pls_near_body *B)
+/// A half-space, or the prism behind a facet. The origin is moved to its front, which has no share in moments about a point on it.
+static void take_wall(const pls_posed *a, const pls_prism *wall, pls_vec3 *origin, pls_near_body *B)
 {
-    if (pls_is_facet(b->shape))
-        take_facet(b, *origin, centre_of(a), B);
-    else
-    {
-        B->face[0].plane = pls_half_space_through(pls_posed_gradient(b, b->position), pls_sub(b->position, *origin));
-        B->faces = B->planes = 1;
-        B->face[0].outline = NULL;
-    }
-    const pls_vec3 shift = pls_scale(B->face[0].plane.normal, B->face[0].plane.offset);
+    const pls_vec3 shift = pls_scale(wall->plane[0].normal, wall->plane[0].offset);
     *origin = pls_add(*origin, shift);
-    for (int f = 1; f < B->planes; ++f) B->face[f].plane.offset -= pls_dot(B->face[f].plane.normal, shift);
+    B->faces = wall->faces, B->planes = wall->planes;
+    for (int f = 0; f < wall->planes; ++f)
+        B->face[f] = (pls_near_face){.plane = {wall->plane[f].normal, wall->plane[f].offset - pls_dot(wall->plane[f].normal, shift)}};
     B->face[0].plane.offset = 0.0;
-    B->reach = pls_length(pls_sub(centre_of(a), *origin)) + a->size;
+    B->reach = pls_length(pls_sub(pls_posed_world(a, a->shape->mass.centre), *origin)) + a->size;
 }
 
 static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                         pls_overlap_record *record, bool *recorded, pls_touch *out)
 {
-    const bool facet = pls_is_facet(b->shape), wall = pls_is_half_space(b) || facet;
+    const bool wall = pls_is_half_space(b);
     pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5), n = depth->normal;
     double height_a[PLS_MOST_CORNERS], height_b[PLS_MOST_CORNERS], reach_b = 0.0;
     pls_near_body A, B;
     if (wall)
     {
-        take_wall(a, b, &origin, &B);
-        n = pls_scale(B.face[0].plane.normal, -1.0);
+        const pls_vec3 front = pls_posed_gradient(b, b->position);
+        const pls_prism ground = {1, 1, {pls_half_space_through(front, pls_sub(b->position, origin))}};
+        take_wall(a, &ground, &origin, &B);
+        n = pls_scale(front, -1.0);
     }
     else
         reach_b = pls_near_heights(b, start_of(b, origin, pls_scale(n, -1.0)), pls_scale(n, -1.0), height_b);
@@ -144,7 +130,7 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
     const pls_slab between = pls_slab_of(origin, n, height_a, wall ? NULL : height_b, reach_a, reach_b, size);
     if (!(between.deep > least_depth * a->size)) return false;
     pls_recalled recalled;
-    if (!facet && pls_overlap_by_record(a, b, &between, options->faces == PLS_FACES_MANIFOLD, record, &recalled))
+    if (pls_overlap_by_record(a, b, &between, options->faces == PLS_FACES_MANIFOLD, record, &recalled))
     {
         *recorded = finish(&recalled.P, recalled.origin, size, a, options, out);
         if (record) record->normal = out->normal;
@@ -156,12 +142,27 @@ static bool overlap_law(const pls_posed *a, const pls_posed *b, const pls_depth 
     return finish(&P, origin, size, a, options, out);
 }
 
+bool pls_faces_behind(const pls_posed *a, const pls_posed *facet, const pls_prism *prism, pls_vec3 *origin, pls_overlap_integrals *P)
+{
+    pls_near_body A, B;
+    take_wall(a, prism, origin, &B);
+    const pls_vec3 n = pls_scale(B.face[0].plane.normal, -1.0);
+    double height[PLS_MOST_CORNERS];
+    const double reach = pls_near_heights(a, start_of(a, *origin, n), n, height), size = fmax(a->size, facet->size);
+    const pls_slab between = pls_slab_of(*origin, n, height, NULL, reach, 0.0, size);
+    if (!(between.deep > least_depth * a->size)) return false;
+    pls_near_faces(a, facet, &between, &A, &B);
+    PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, PLS_OVERLAP_BLUR * size, P);
+    return P->volume > 0.0;
+}
+
 bool pls_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                      pls_overlap_record *record, bool *recorded, pls_touch *out)
 {
     double half[3];
-    const bool plane = pls_is_half_space(b), wall = plane || pls_is_facet(b->shape);
-    const bool faces = has_faces(a->shape) && (wall || (has_faces(b->shape) && a->shape->margin == 0.0 && b->shape->margin == 0.0));
+    const bool plane = pls_is_half_space(b);
+    const bool faces =
+        pls_has_faces(a->shape) && (plane || (pls_has_faces(b->shape) && a->shape->margin == 0.0 && b->shape->margin == 0.0));
     const bool cap = plane && options->faces == PLS_FACES_VOLUME && is_ellipsoid(a->shape, half);
     *recorded = false;
     if (options->faces == PLS_FACES_POINT || (!faces && !cap)) return false;

@@ -3,14 +3,38 @@
 #define PLS_CONTACT_FACET_H
 
 #include "contact/overlap.h"
+#include "contact/posed.h"
+#include "shape/wall_facets.h"
 
-/// A triangle or segment of a wall: two faces back to back.
-static inline bool pls_is_facet(const pls_shape *s)
+static inline bool pls_is_facet(const pls_shape *s) { return pls_shape_facet(s) != NULL; }
+
+/// A facet as seen from a point.
+typedef struct pls_facet_view
 {
-    return s->convex && s->polytope && s->polytope->face_count == 2 && s->polytope->vertex_count == (uint32_t)s->dimension;
-}
+    double distance; ///< squared [m^2]
+    double front;    ///< 1: the point is on the side of the facet's normal; -1: on the other one
+} pls_facet_view;
 
-/// The prism behind a facet, about `origin`: its front, towards `centre`, its margin before the facet; then the sides. Returns the number of planes.
-int pls_facet_prism(const pls_posed *facet, pls_vec3 origin, pls_vec3 centre, pls_half_space plane[4]);
+/// Where the nearest point of the facet is one of its sides or corners, the facets around it decide together on which side of the wall the point is.
+/// `seams`: how the facet lies to its neighbours.
+pls_facet_view pls_facet_seen_from(const pls_posed *facet, const pls_facet *seams, pls_vec3 X);
+
+/// Is a free side of one facet at the same place as one of another? Then they are joined there in `seams`, which are those of the first one, and the side is returned; else -1.
+int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_posed *other, uint32_t neighbour);
+
+/// Does a seam, as seen from the front, turn towards it, and more than within a patch?
+static inline bool pls_seam_is_valley(const pls_facet *f, int k, double front) { return !f->level[k] && f->bend[k] * front < 0.0; }
+
+/// What is behind a facet.
+struct pls_prism
+{
+    int faces;               ///< those that depth counts from: the front, then free sides
+    int planes;              ///< all; the rest are planes that halve the angle to the facet beyond
+    pls_half_space plane[4]; ///< outwards
+};
+
+/// About `origin`, the margin before the facet. Behind a facet is what is nearer to it than to its neighbours; in a valley all that is behind its plane, so that a body comes
+/// in by the front only. Near a free side depth counts from there, too: it grows from zero wherever a body comes from.
+pls_prism pls_facet_prism(const pls_posed *facet, const pls_facet *seams, pls_vec3 origin, double front);
 
 #endif

@@ -19,9 +19,10 @@
 
 #include "contact/lines.h"
 
-#include "contact/facet.h"
-#include "contact/touch_area.h"
+#include "contact/overlap_laws.h"
 #include "math/gauss.h"
+
+#include <string.h>
 
 static const double parallel = 1e-12; ///< sine of the angle below which a line keeps its distance from an edge
 
@@ -33,11 +34,11 @@ typedef struct push
 
 typedef struct sums
 {
-    double power[4];    ///< of t^k
-    push by_t, by_t2;   ///< of t and t^2 times the gradient of t
-    pls_vec3 first;     ///< of x
-    pls_vec3 first_t;   ///< of t x
-    double second_t[6]; ///< of t x x
+    double power[4];  ///< of t^k
+    push by_t, by_t2; ///< of t and t^2 times the gradient of t
+    pls_vec3 even;    ///< of x
+    pls_vec3 first;   ///< of t x
+    double second[6]; ///< of t x x
 } sums;
 
 /// An edge x(s) = start + s along of one body, in metres in the frame of the other, whose core is `against`.
@@ -116,9 +117,9 @@ static void add_point(sums *sum, const line *l, const feature *f, double s, doub
     sum->by_t.torque = pls_add(sum->by_t.torque, pls_scale(turns, weight * t));
     sum->by_t2.force = pls_add(sum->by_t2.force, pls_scale(pushes, weight * t * t));
     sum->by_t2.torque = pls_add(sum->by_t2.torque, pls_scale(turns, weight * t * t));
-    sum->first = pls_add(sum->first, pls_scale(at, weight));
-    sum->first_t = pls_add(sum->first_t, pls_scale(at, weight * t));
-    for (int k = 0; k < 6; ++k) sum->second_t[k] += weight * t * second[k];
+    sum->even = pls_add(sum->even, pls_scale(at, weight));
+    sum->first = pls_add(sum->first, pls_scale(at, weight * t));
+    for (int k = 0; k < 6; ++k) sum->second[k] += weight * t * second[k];
 }
 
 /// Keep where the feature is nearer than `reach`.
@@ -328,8 +329,6 @@ static bool has_edges(const pls_shape *s)
            s->polytope->vertex_count <= 2 * PLS_MOST_FACES;
 }
 
-static bool is_wall(const pls_shape *s) { return s->ops->unbounded || pls_is_facet(s); }
-
 static void add_edge(sums *sum, line *l, const pls_posed *own, pls_vec3 p, pls_vec3 q)
 {
     const pls_posed *other = l->against;
@@ -377,48 +376,58 @@ static void add_edges(sums *sum, const pls_posed *own, const pls_posed *other, p
 
 // ---- the law ------------------------------------------------------------------------------------------------------------------------------------------------
 
-static void line_law(const sums *sum, bool flat, pls_vec3 origin, double size, pls_touch *out)
+/// As of an overlap whose thickness is t: the law is MANIFOLD of faces.c.
+static pls_overlap_integrals integrals_of(const sums *sum)
 {
-    const double *W = sum->power, delta = W[3] / W[2];
-    const pls_vec3 force = pls_scale(pls_sub(pls_scale(sum->by_t2.force, 3.0), pls_scale(sum->by_t.force, 2.0 * delta)), 1.0 / W[2]);
-    const pls_vec3 torque = pls_scale(pls_sub(pls_scale(sum->by_t2.torque, 3.0), pls_scale(sum->by_t.torque, 2.0 * delta)), 1.0 / W[2]);
-    const double square = pls_dot(force, force), length = sqrt(square);
-    const pls_vec3 heavy = pls_scale(sum->first_t, 1.0 / W[1]), about = pls_sub(torque, pls_cross(heavy, force));
+    const double *W = sum->power;
+    pls_overlap_integrals P = {.volume = W[1],
+                               .surface = W[0],
+                               .first = sum->first,
+                               .line = true,
+                               .area_moment = sum->even,
+                               .by_depth = {W[2] / 2.0, sum->by_t.force, sum->by_t.torque},
+                               .by_its_square = {W[3] / 3.0, sum->by_t2.force, sum->by_t2.torque}};
+    memcpy(P.second, sum->second, sizeof P.second);
+    return P;
+}
+
+bool pls_line_law(pls_overlap_integrals *P, double size, bool flat, pls_touch *out)
+{
+    const pls_narrow_options manifold = {.faces = PLS_FACES_MANIFOLD};
+    pls_touch t = *out;
+    if (!pls_overlap_touch(P, &manifold, PLS_OVERLAP_BLUR * size, flat, &t)) return false;
     // Cores nearly in each other: pushes from all sides cancel, and what is left of them would act far away. The point stands.
-    if (!(pls_length(pls_cross(force, about)) < size * square)) return;
-    out->normal = pls_scale(force, 1.0 / length);
-    out->delta = delta * length;
-    out->energy_delta = delta;
-    out->point = pls_add(heavy, pls_scale(pls_cross(force, about), 1.0 / square));
-    out->twist = flat ? 0.0 : pls_dot(about, force) / square;
-    // d2(delta^2/2) as lines grow deeper over a fixed length.
-    const double slope = 3.0 - 2.0 * delta * W[1] / W[2];
-    const double bend = -2.0 * (slope * W[1] / W[2] + delta * (W[0] - 2.0 * W[1] * W[1] / W[2]) / W[2]);
-    out->weight = fmax(slope * slope + delta * bend, 0.0);
-    const double middle[6] = {heavy.x * heavy.x, heavy.y * heavy.y, heavy.z * heavy.z,
-                              heavy.x * heavy.y, heavy.x * heavy.z, heavy.y * heavy.z};
-    for (int k = 0; k < 6; ++k) out->spread[k] = sum->second_t[k] / W[1] - middle[k];
-    for (int k = 0; k < 3; ++k) out->spread[k] = fmax(out->spread[k], 0.0);
-    out->lever = flat ? 0.0 : PLS_ARM_OF_LINE * sqrt(out->spread[0] + out->spread[1] + out->spread[2]);
-    // As for areas friction acts in the middle of what touches, which does not wander when the load does (faces.c).
-    out->middle = flat ? out->point : pls_in_plane_of_touch(out, pls_scale(sum->first, 1.0 / W[0]));
-    out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
+    if (!(pls_length(pls_sub(t.point, pls_scale(P->first, 1.0 / P->volume))) < size)) return false;
+    if (flat) t.twist = 0.0;
+    *out = t;
+    return true;
 }
 
 bool pls_lines_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, pls_touch *out)
 {
-    const bool line_a = is_segment(a->shape), line_b = is_segment(b->shape), wall = is_wall(b->shape);
-    const bool known_a = line_a || has_edges(a->shape), known_b = line_b || has_edges(b->shape) || b->shape->ops->unbounded;
-    if (!known_a || !known_b || (wall && !line_a)) return false;
+    const bool line_a = is_segment(a->shape), line_b = is_segment(b->shape), ground = b->shape->ops->unbounded;
+    const bool known_a = line_a || has_edges(a->shape), known_b = line_b || has_edges(b->shape) || ground;
+    if (!known_a || !known_b || (ground && !line_a)) return false;
     if (!(a->shape->margin > 0.0) && !(b->shape->margin > 0.0)) return false;
     const pls_vec3 origin = pls_scale(pls_add(depth->on_a, depth->on_b), 0.5);
     sums sum = {0};
     if (line_a || !line_b) add_edges(&sum, a, b, depth->normal, origin, -1.0);
-    if (!wall && (line_b || !line_a)) add_edges(&sum, b, a, pls_scale(depth->normal, -1.0), origin, 1.0);
+    if (!ground && (line_b || !line_a)) add_edges(&sum, b, a, pls_scale(depth->normal, -1.0), origin, 1.0);
     out->depth = out->reach = depth->delta;
-    if (sum.power[3] > 0.0)
-        line_law(&sum, a->shape->dimension == 2, origin, fmin(a->size, b->size), out);
-    else
+    pls_overlap_integrals P = integrals_of(&sum);
+    if (!(sum.power[3] > 0.0))
         out->delta = fmin(depth->delta, 0.0);
+    else if (pls_line_law(&P, fmin(a->size, b->size), a->shape->dimension == 2, out))
+        out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
     return true;
+}
+
+bool pls_has_line(const pls_shape *shape) { return is_segment(shape) && shape->margin > 0.0; }
+
+bool pls_line_on(const pls_posed *a, const pls_posed *facet, pls_vec3 origin, pls_overlap_integrals *P)
+{
+    sums sum = {0};
+    add_edges(&sum, a, facet, pls_vec(0.0, 0.0, 0.0), origin, -1.0);
+    *P = integrals_of(&sum);
+    return sum.power[3] > 0.0;
 }

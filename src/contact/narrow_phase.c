@@ -26,9 +26,11 @@
 #include "contact/faces.h"
 #include "contact/feature_depth.h"
 #include "contact/lines.h"
+#include "contact/overlap_laws.h"
 #include "contact/polytope_depth.h"
 #include "contact/sampled_touch.h"
 #include "contact/sdf_depth.h"
+#include "contact/wall_touch.h"
 
 #include <string.h>
 
@@ -560,6 +562,17 @@ static void as_touch(const pls_depth *d, pls_touch *out)
                        .reach = d->delta};
 }
 
+/// A piece of a wall alone, whatever its neighbours do.
+static void one_facet(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, const pls_touch *depth, pls_touch *out)
+{
+    pls_wall_sum sum = pls_wall_sum_of(a);
+    const pls_facet *seams = pls_shape_facet(b->shape);
+    pls_wall_add(&sum, b, seams, pls_facet_seen_from(b, seams, centre_of(a)).front, depth);
+    if (pls_wall_touch(&sum, options, out)) return;
+    const pls_depth none = {.delta = fmin(depth->delta, 0.0), .normal = depth->normal, .on_a = depth->point, .on_b = depth->point};
+    pls_overlap_none(&none, out);
+}
+
 bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_pair_state *state,
                            pls_overlap_record *record, pls_touch *out, pls_narrow_counts *counts)
 {
@@ -568,6 +581,12 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     const query q = {a, b, state->value, counts}, cold = {a, b, none.value, counts};
     pls_depth d;
     ++counts->queries;
+    const bool on_wall = pls_is_wall_pair(a, b, options);
+    if (on_wall && pls_wall_needs_no_depth(a, b))
+    {
+        one_facet(a, b, options, &(pls_touch){.delta = a->size, .normal = pls_vec(0.0, 0.0, 1.0), .point = centre_of(a)}, out);
+        return false;
+    }
     if (options->faces != PLS_FACES_POINT && pls_is_sampled_pair(a->shape, b->shape))
     {
         pls_sampled_touch(a, b, options, out);
@@ -579,6 +598,12 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     // Where the pair has neither faces nor lines to speak of the point stands.
     bool recorded = false;
     if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return false;
+    if (on_wall)
+    {
+        pls_touch depth = *out;
+        one_facet(a, b, options, &depth, out);
+        return false;
+    }
     out->stands = pls_faces_touch(a, b, &d, options, record, &recorded, out) || pls_cylinder_touch(a, b, &d, options, out) ||
                   pls_lines_touch(a, b, &d, out);
     return recorded;

@@ -48,7 +48,7 @@ typedef struct pls_push
 } pls_push;
 
 /// In 2D of a slab of thickness 1.
-typedef struct pls_overlap_integrals
+struct pls_overlap_integrals
 {
     double volume;                    ///< [m^3]
     double surface;                   ///< sum of areas [m^2]
@@ -56,8 +56,9 @@ typedef struct pls_overlap_integrals
     double second[6];                 ///< of x (x) x: xx, yy, zz, xy, xz, yz [m^5]
     pls_vec3 area;                    ///< integral of the outward normal over A's surface in B [m^2]
     pls_vec3 area_moment;             ///< of x cross normal [m^3]
+    bool line;                        ///< over a line: `surface` is its length, `area_moment` the integral of x; powers of m are one less
     pls_push by_depth, by_its_square; ///< of d and of d^2: the mean of both bodies, or d of the wall alone
-} pls_overlap_integrals;
+};
 
 /// `blur` is a length that rounding does not reach: faces of A and B that lie in one plane count once [m].
 PLS_SIMD_DECLARE(void, pls_overlap_integrate, const pls_near_body *a, const pls_near_body *b, int dimension, double blur,

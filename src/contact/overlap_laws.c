@@ -20,6 +20,7 @@ static void take_spread(const pls_overlap_integrals *P, bool flat, double spread
     const pls_vec3 c = pls_scale(P->first, 1.0 / V);
     const double middle[6] = {c.x * c.x, c.y * c.y, c.z * c.z, c.x * c.y, c.x * c.z, c.y * c.z};
     for (int k = 0; k < 6; ++k) spread[k] = flat && (k == 2 || k > 3) ? 0.0 : P->second[k] / V - middle[k];
+    for (int k = 0; P->line && k < 3; ++k) spread[k] = fmax(spread[k], 0.0);
 }
 
 /// The middle of A's surface in B, in the plane of touch through the point of the normal force. That point wanders as faces tilt: at overlaps far below the size by more than
@@ -28,16 +29,18 @@ static void take_spread(const pls_overlap_integrals *P, bool flat, double spread
 static pls_vec3 middle_of_area(const pls_overlap_integrals *P, const pls_touch *t)
 {
     const pls_vec3 area = P->area;
+    if (P->line) return pls_in_plane_of_touch(t, pls_scale(P->area_moment, 1.0 / P->surface));
     const double square = pls_dot(area, area);
     if (!(square > 0.0)) return t->point;
     return pls_in_plane_of_touch(t, pls_scale(pls_cross(area, P->area_moment), 1.0 / square));
 }
 
-/// Right for evenly pressed discs, whose mean distance from the middle it is (2/3 of their radius), and to half a percent for squares.
-static double lever_of(const pls_touch *t)
+/// Right for evenly pressed lines and discs, whose mean distance from the middle it is (of discs 2/3 of their radius), and to half a percent for squares.
+static double lever_of(const pls_touch *t, bool line)
 {
-    const double *s = t->spread, all = s[0] + s[1] + s[2] - pls_dot(t->normal, pls_second_along(s, t->normal));
-    return PLS_ARM_OF_DISC * sqrt(fmax(all, 0.0));
+    const double *s = t->spread, all = s[0] + s[1] + s[2];
+    if (line) return PLS_ARM_OF_LINE * sqrt(all);
+    return PLS_ARM_OF_DISC * sqrt(fmax(all - pls_dot(t->normal, pls_second_along(s, t->normal)), 0.0));
 }
 
 /// Energy kn W / A0.
@@ -64,7 +67,7 @@ static void manifold_law(const pls_overlap_integrals *P, pls_touch *out)
     out->delta = delta * length;
     out->energy_delta = delta;
     // d2(delta^2/2) as the overlap grows deeper over a fixed area: by integrals of t^0, t and t^2 over it; 1 for parallel faces, 9/16 at an edge.
-    const double squares = 2.0 * W->energy, area = fabs(pls_dot(P->area, out->normal));
+    const double squares = 2.0 * W->energy, area = P->line ? P->surface : fabs(pls_dot(P->area, out->normal));
     const double a = delta * V / squares, b = delta * delta * area / squares;
     out->weight = fmax(9.0 - 18.0 * a + 12.0 * a * a - 2.0 * b, 0.0);
     put_on_line(&slope, pls_scale(P->first, 1.0 / V), &out->point, &out->twist);
@@ -89,7 +92,7 @@ bool pls_overlap_touch(pls_overlap_integrals *P, const pls_narrow_options *optio
     else
         manifold_law(P, out);
     take_spread(P, flat, out->spread);
-    out->lever = flat ? 0.0 : lever_of(out);
+    out->lever = flat ? 0.0 : lever_of(out, P->line);
     out->middle = flat ? out->point : middle_of_area(P, out);
     return isfinite(out->delta) && out->delta > 0.0;
 }

@@ -459,18 +459,22 @@ static void add_faces(work *w, const pls_near_body *own, const pls_near_body *ot
     }
 }
 
-/// Sides of the prism behind a facet, in `a`.
+/// Sides of the prism behind a facet, in `a`. Those that are faces have no depth, but a share in the volume.
 static void add_sides(work *w, const pls_near_body *facet, const pls_near_body *a, double blur, sums *sum)
 {
-    for (int f = facet->faces; f < facet->planes; ++f)
+    for (int f = 1; f < facet->planes; ++f)
     {
-        const pls_half_space *side = &facet->face[f].plane, *front = &facet->face[0].plane;
+        const pls_half_space *side = &facet->face[f].plane;
         take_square(side, facet->reach, w->round == 0.0, &w->one);
         polygon *p = &w->one;
         for (int g = 0; g < facet->planes && p->count > 0; ++g)
             if (g != f) p = clip(w, p, &facet->face[g].plane, other_of(w, p));
         if (p->count > 0) p = clip_by_body(w, p, a, ~(uint64_t)0, &side->normal, blur);
-        if (p->count > 0) add_polygon(w, p, side, front, opposed(side, front), sum);
+        if (p->count == 0) continue;
+        if (f < facet->faces)
+            add_polygon(w, p, side, side, 0.0, sum);
+        else
+            add_split(w, p, side, facet, 0.0, w->seen_b, sum);
     }
 }
 
@@ -528,6 +532,7 @@ static void add_seams(work *w, const pls_near_body *s, const int *list, int coun
                 const pls_half_space g = nearer(s, list[i], list[k]);
                 p = clip(w, p, &g, other_of(w, p));
             }
+            for (int f = s->faces; f < s->planes && p->count > 0; ++f) p = clip(w, p, &s->face[f].plane, other_of(w, p)); // of a prism
             if (p->count > 0) p = clip_by_body(w, p, other, ~(uint64_t)0, NULL, -blur);
             if (p->count > 0) add_polygon(w, p, &h, &s->face[list[i]].plane, length, &sum_of);
         }
@@ -538,9 +543,9 @@ static void add_seams(work *w, const pls_near_body *s, const int *list, int coun
 static pls_vec3 force_of(const sums *s, int m) { return pls_vec(sum(s->force[m]), sum(s->force_y[m]), sum(s->force_z[m])); }
 static pls_vec3 torque_of(const sums *s, int m) { return pls_vec(sum(s->torque[m]), sum(s->torque_y[m]), sum(s->torque_z[m])); }
 
-/// What the depth under the faces of s gives; `sign`: s is pushed (1) or pushes (-1).
-static void add_pushes(work *w, const pls_near_body *s, const bool *seen, const pls_near_body *other, const sums *sum_of, int dimension,
-                       double blur, double share, double sign, pls_overlap_integrals *out)
+/// What the depth under the faces of s gives, by integrals over the surface of P, `closed`, and over the other body's part of it, `pushing`; `sign`: s is pushed (1) or pushes (-1).
+static void add_pushes(work *w, const pls_near_body *s, const bool *seen, const pls_near_body *other, const sums *closed,
+                       const sums *pushing, int dimension, double blur, double share, double sign, pls_overlap_integrals *out)
 {
     int list[PLS_MOST_FACES], count = 0;
     for (int f = 0; f < s->faces; ++f)
@@ -553,12 +558,11 @@ static void add_pushes(work *w, const pls_near_body *s, const bool *seen, const 
     for (int m = 0; m < 2; ++m)
     {
         pls_push *p = m == 0 ? &out->by_depth : &out->by_its_square;
-        const pls_vec3 force = force_of(sum_of, m);
-        const double energy =
-            cone ? (sum(sum_of->cone[m]) - pls_dot(point, force)) / (dimension + 1 + m) : (sum(sum_of->opposed[m]) + seam[m]) / (2 + m);
+        const double energy = cone ? (sum(closed->cone[m]) - pls_dot(point, force_of(closed, m))) / (dimension + 1 + m)
+                                   : (sum(closed->opposed[m]) + seam[m]) / (2 + m);
         p->energy += share * energy;
-        p->force = pls_add(p->force, pls_scale(force, sign * share));
-        p->torque = pls_add(p->torque, pls_scale(torque_of(sum_of, m), sign * share));
+        p->force = pls_add(p->force, pls_scale(force_of(pushing, m), sign * share));
+        p->torque = pls_add(p->torque, pls_scale(torque_of(pushing, m), sign * share));
     }
 }
 
@@ -585,20 +589,21 @@ void PLS_SIMD(pls_overlap_integrate)(const pls_near_body *a, const pls_near_body
     const double share = wall ? 1.0 : 0.5;
     *out = (pls_overlap_integrals){0};
 
-    sums in_b;
+    sums in_b, closed;
     memset(&in_b, 0, sizeof in_b);
     add_faces(&w, a, b, false, wall && b->planes == 1 ? 0.0 : blur, w.seen_a, w.seen_b, &in_b);
     integrate(&w.batch, &in_b);
     out->area = vec_of(in_b.area, 1.0), out->area_moment = vec_of(in_b.area_moment, 1.0);
-    if (b->planes > b->faces)
+    closed = in_b; // the front of a wall lies at no depth and, as seen from an origin on it, has no share in the volume; the sides of a prism do
+    if (wall && b->planes > 1)
     {
-        add_sides(&w, b, a, blur, &in_b);
-        integrate(&w.batch, &in_b);
+        add_sides(&w, b, a, blur, &closed);
+        integrate(&w.batch, &closed);
     }
-    add_moments(&in_b, dimension, out);
+    add_moments(&closed, dimension, out);
     if (wall)
     {
-        add_pushes(&w, b, w.seen_b, a, &in_b, dimension, blur, share, 1.0, out);
+        add_pushes(&w, b, w.seen_b, a, &closed, &in_b, dimension, blur, share, 1.0, out);
         return;
     }
     sums in_a;
@@ -606,8 +611,8 @@ void PLS_SIMD(pls_overlap_integrate)(const pls_near_body *a, const pls_near_body
     add_faces(&w, b, a, true, blur, w.seen_b, w.seen_a, &in_a);
     integrate(&w.batch, &in_a);
     add_moments(&in_a, dimension, out);
-    add_pushes(&w, b, w.seen_b, a, &in_b, dimension, blur, share, 1.0, out);
-    add_pushes(&w, a, w.seen_a, b, &in_a, dimension, blur, share, -1.0, out);
+    add_pushes(&w, b, w.seen_b, a, &in_b, &in_b, dimension, blur, share, 1.0, out);
+    add_pushes(&w, a, w.seen_a, b, &in_a, &in_a, dimension, blur, share, -1.0, out);
 }
 
 void PLS_SIMD(pls_overlap_seams)(const pls_near_body *s, const int *list, int count, const pls_near_body *other, int dimension, double blur,

@@ -52,16 +52,8 @@ typedef struct sums
 typedef struct holder
 {
     const pls_posed *body;
-    int planes; ///< 0: by the SDF
-    pls_half_space plane[4];
+    pls_prism prism; ///< of no planes: by the SDF
 } holder;
-
-static holder hold(const pls_posed *body, pls_vec3 origin)
-{
-    holder h = {.body = body};
-    if (pls_is_facet(body->shape)) h.planes = pls_facet_prism(body, origin, origin, h.plane);
-    return h;
-}
 
 /// Takes points of a shape's frame to another one.
 typedef struct frame
@@ -83,36 +75,47 @@ static frame about_origin(const pls_posed *own, pls_vec3 origin)
 /// From the frame of a shape to that which the holder works in.
 static frame to_holder(const holder *h, const pls_posed *own, pls_vec3 origin)
 {
-    if (h->planes > 0) return about_origin(own, origin);
+    if (h->prism.planes > 0) return about_origin(own, origin);
     const double ratio = own->scale / h->body->scale;
     return (frame){pls_posed_own(h->body, own->position), pls_scale(pls_posed_turn_back(h->body, own->x), ratio),
                    pls_scale(pls_posed_turn_back(h->body, own->y), ratio), pls_scale(pls_posed_turn_back(h->body, own->z), ratio)};
 }
 
+/// The least of the depths below planes first .. last of a prism, and which it is.
+static inline double least_depth(const pls_prism *p, int first, int last, pls_vec3 X, int *which)
+{
+    double least = INFINITY;
+    for (int k = first; k < last; ++k)
+    {
+        const double d = p->plane[k].offset - pls_dot(p->plane[k].normal, X);
+        if (d < least) least = d, *which = k;
+    }
+    return least;
+}
+
 /// Signed distance [m]; of prisms that from the furthest of their planes.
 static inline double distance_to(const holder *h, pls_vec3 X)
 {
-    if (h->planes == 0) return pls_shape_sdf(h->body->shape, X) * h->body->scale;
-    double most = -INFINITY;
-    for (int k = 0; k < h->planes; ++k)
-    {
-        const double d = pls_dot(h->plane[k].normal, X) - h->plane[k].offset;
-        most = d > most ? d : most;
-    }
-    return most;
+    int which;
+    if (h->prism.planes == 0) return pls_shape_sdf(h->body->shape, X) * h->body->scale;
+    return -least_depth(&h->prism, 0, h->prism.planes, X, &which);
 }
 
-/// Depth below the surface [m], of a prism below its front; not positive outside.
+/// Depth below the surface [m], of a prism below its faces; not positive outside.
 static inline double depth_in(const holder *h, pls_vec3 X)
 {
+    int which;
     const double d = distance_to(h, X);
-    return d >= 0.0 || h->planes == 0 ? -d : h->plane[0].offset - pls_dot(h->plane[0].normal, X);
+    return d >= 0.0 || h->prism.planes == 0 ? -d : least_depth(&h->prism, 0, h->prism.faces, X, &which);
 }
 
 /// Gradient of the distance, in the world.
 static pls_vec3 gradient_in(const holder *h, pls_vec3 X)
 {
-    return h->planes > 0 ? h->plane[0].normal : pls_posed_turn(h->body, pls_shape_gradient(h->body->shape, X));
+    int which = 0;
+    if (h->prism.planes == 0) return pls_posed_turn(h->body, pls_shape_gradient(h->body->shape, X));
+    least_depth(&h->prism, 0, h->prism.faces, X, &which);
+    return h->prism.plane[which].normal;
 }
 
 static void add_push(pls_push *p, double energy, pls_vec3 x, pls_vec3 force)
@@ -167,19 +170,28 @@ static void add_pieces(sums *s, const pls_posed *own, const holder *h, pls_vec3 
 
 // ---- the call -------------------------------------------------------------------------------------------------------------------------------------------
 
+static pls_vec3 origin_of(const pls_posed *a) { return pls_posed_world(a, a->shape->mass.centre); }
+
+void pls_sampled_area(double size, pls_touch *t)
+{
+    // One piece is a point; what its moments differ by from none are rounding errors.
+    const double all = t->spread[0] + t->spread[1] + t->spread[2];
+    if (!(all > point_like * size * size)) memset(t->spread, 0, sizeof t->spread), t->lever = 0.0;
+}
+
 void pls_sampled_touch(const pls_posed *a, const pls_posed *b, const pls_narrow_options *options, pls_touch *out)
 {
     sums s = {.deepest = 0.0, .nearest = INFINITY};
-    const pls_vec3 origin = pls_posed_world(a, a->shape->mass.centre);
+    const pls_vec3 origin = origin_of(a);
     const bool both = a->shape->sample && b->shape->sample;
     if (a->shape->sample)
     {
-        const holder h = hold(b, origin);
+        const holder h = {.body = b};
         add_pieces(&s, a, &h, origin, both ? 0.5 : 1.0, 1.0);
     }
     if (b->shape->sample)
     {
-        const holder h = hold(a, origin);
+        const holder h = {.body = a};
         add_pieces(&s, b, &h, origin, both ? 0.5 : 1.0, -1.0);
     }
     const double blur = PLS_OVERLAP_BLUR * a->size;
@@ -187,11 +199,18 @@ void pls_sampled_touch(const pls_posed *a, const pls_posed *b, const pls_narrow_
     if (s.deepest > 0.0 && pls_overlap_touch(&s.P, options, blur, a->shape->dimension == 2, out))
     {
         out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
-        // One piece is a point; what its moments differ by from none are rounding errors.
-        const double all = out->spread[0] + out->spread[1] + out->spread[2];
-        if (!(all > point_like * a->size * a->size)) memset(out->spread, 0, sizeof out->spread), out->lever = 0.0;
+        pls_sampled_area(a->size, out);
     }
     else
         pls_overlap_none(&none, out);
     out->depth = out->reach = s.deepest > 0.0 ? s.deepest : none.delta;
+}
+
+double pls_sampled_behind(const pls_posed *a, const pls_posed *facet, const pls_prism *prism, pls_vec3 origin, pls_overlap_integrals *P)
+{
+    sums s = {.deepest = 0.0, .nearest = INFINITY};
+    const holder h = {facet, *prism};
+    add_pieces(&s, a, &h, origin, 1.0, 1.0);
+    *P = s.P;
+    return s.deepest;
 }

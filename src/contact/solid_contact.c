@@ -2,6 +2,7 @@
 //
 //     track      do the bounding volumes of the two parts overlap? If not, nothing is remembered of them
 //     touch      the narrow phase: overlap, normal, contact point
+//     group      pieces of a wall that a body lies over touch it as one (wall_groups.h)
 //     shade      of several contacts of two bodies that push in one direction at one place (seams of compounds, edges within a mesh) only the deepest counts, and none
 //                at points that belong to a deeper part, too
 //     frame      velocities at the contact point, the spring carried into the frame of now
@@ -25,6 +26,8 @@
 
 #include "contact/overlap_record.h"
 #include "contact/touch_area.h"
+#include "contact/wall_groups.h"
+#include "contact/wall_touch.h"
 #include "math/small_turn.h"
 
 #include <string.h>
@@ -53,14 +56,7 @@ static pls_vec3 shift_of(const pls_solid_pair *pair, const double edge[3])
     return pls_vec(pair->shift[0] * edge[0], pair->shift[1] * edge[1], pair->shift[2] * edge[2]);
 }
 
-/// The two parts of a candidate where they are; kept in `own` unless the list has them.
-typedef struct parts
-{
-    const pls_posed *a, *b;
-    pls_posed own[2];
-} parts;
-
-static inline void pose_parts(const pls_solid_list *list, const pls_contact_input *in, size_t c, parts *out)
+void pls_solid_parts_of(const pls_solid_list *list, const pls_contact_input *in, size_t c, pls_solid_parts *out)
 {
     const pls_solid_pair *pair = &list->pair[c];
     out->a = &list->posed[pair->row_i], out->b = &list->posed[pair->row_j];
@@ -134,6 +130,18 @@ static bool spares_search(const pls_law *law, const pls_solid_pair *pair)
     return !law->lever_at_surface && law->narrow.faces != PLS_FACES_POINT && law->narrow.solver == PLS_SOLVER_DEPTH && !pair->lets_go;
 }
 
+/// What grouping facets goes by: the depth, or that there is none to know.
+static void find_depth_on_wall(const pls_solid_parts *p, const pls_narrow_options *options, pls_pair_state *state, pls_touch *touch,
+                               pls_narrow_counts *counts)
+{
+    pls_narrow_options point = *options;
+    point.faces = PLS_FACES_POINT;
+    if (!pls_wall_needs_no_depth(p->a, p->b))
+        pls_narrow_phase_from(p->a, p->b, &point, state, NULL, touch, counts);
+    else
+        *touch = (pls_touch){.delta = p->a->size, .normal = pls_vec(0.0, 0.0, 1.0), .point = centre_of(p->a)};
+}
+
 static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t c, pls_narrow_counts *counts)
 {
     pls_solid_pair *pair = &list->pair[c];
@@ -141,8 +149,8 @@ static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t
     pls_touch *touch = &list->touch[c];
     const pls_law *law = &in->laws->law[pair->law];
     const bool spares = spares_search(law, pair), goes_on = spares && memory->touches == PLS_SOLID_TOUCHES;
-    parts p;
-    pose_parts(list, in, c, &p);
+    pls_solid_parts p;
+    pls_solid_parts_of(list, in, c, &p);
     pair->ended = memory->touches == PLS_SOLID_TOUCHES; // until it is found to touch
     pair->tracked = 1;
     if (goes_on && pls_narrow_phase_again(p.a, p.b, &law->narrow, &list->record[c], touch, counts))
@@ -154,6 +162,18 @@ static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t
     touch->delta = 0.0;
     const pls_narrow_counts before = *counts;
     bool recorded = false;
+    pair->on_wall = pls_is_wall_pair(p.a, p.b, &law->narrow);
+    if (pair->on_wall)
+    {
+        if (pair->tracked)
+            find_depth_on_wall(&p, &law->narrow, &memory->state, touch, counts);
+        else
+        {
+            memset(&memory->state, 0, sizeof memory->state);
+            touch->delta = -INFINITY;
+        }
+        return;
+    }
     if (pair->tracked) recorded = pls_narrow_phase_from(p.a, p.b, &law->narrow, &memory->state, &list->record[c], touch, counts);
     // As if the record had been at hand, wherever that comes from: restarts and lists made anew change nothing.
     if (!pair->tracked || (recorded && spares)) memset(&memory->state, 0, sizeof memory->state);
@@ -181,8 +201,8 @@ static bool has_points_of(const pls_solid_list *list, const pls_contact_input *i
 {
     const pls_touch *t = &list->touch[c];
     if (!pls_touch_is_point(t)) return false;
-    parts own, other;
-    pose_parts(list, in, c, &own), pose_parts(list, in, d, &other);
+    pls_solid_parts own, other;
+    pls_solid_parts_of(list, in, c, &own), pls_solid_parts_of(list, in, d, &other);
     const bool same_a = list->memory[c].part_i == list->memory[d].part_i;
     const bool same_b =
         list->memory[c].part_j == list->memory[d].part_j && pls_image_key(list->pair[c].shift) == pls_image_key(list->pair[d].shift);
@@ -198,6 +218,9 @@ static bool shades(const pls_solid_list *list, const pls_contact_input *in, size
     return at_one_place(list, d, c) || has_points_of(list, in, d, c);
 }
 
+/// Is it an area, a line, or a facet, of which others decide?
+static bool stands(const pls_solid_list *list, size_t c) { return list->touch[c].stands || list->pair[c].on_wall; }
+
 /// Which of the candidates first .. last, all of one pair of bodies, act: `next` gets their new PLS_SOLID_ state. Areas and lines neither shade nor are shaded: a contact that came and went all at once would bring energy from nowhere.
 static void choose_acting(const pls_solid_list *list, const pls_contact_input *in, size_t first, size_t last, uint8_t *next)
 {
@@ -205,10 +228,10 @@ static void choose_acting(const pls_solid_list *list, const pls_contact_input *i
     if (last - first < 2) return;
     for (size_t c = first; c < last; ++c)
     {
-        if (next[c - first] == PLS_SOLID_APART || list->touch[c].stands) continue;
+        if (next[c - first] == PLS_SOLID_APART || stands(list, c)) continue;
         for (size_t d = first; d < last && next[c - first] == PLS_SOLID_TOUCHES; ++d)
         {
-            if (d == c || !(list->touch[d].delta > 0.0) || list->touch[d].stands) continue;
+            if (d == c || !(list->touch[d].delta > 0.0) || stands(list, d)) continue;
             bool deeper = list->touch[d].delta > list->touch[c].delta || (list->touch[d].delta == list->touch[c].delta && d < c);
             if (deeper && shades(list, in, d, c)) next[c - first] = PLS_SOLID_SHADED;
         }
@@ -524,7 +547,7 @@ static void inherit(pls_solid_list *list, size_t first, size_t last, const uint8
 void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *in, const pls_solid_block *block, pls_contact_work *work,
                         pls_narrow_counts *counts)
 {
-    enum { MOST = PLS_CONTACT_BLOCK, FEW = 4096 };
+    enum { MOST = PLS_CONTACT_BLOCK, FEW = PLS_FEW_CANDIDATES };
     uint32_t batch[MOST];
     size_t taken = 0;
     for (size_t c = block->first; c < block->last; ++c) find_touch(list, in, c, counts);
@@ -535,6 +558,7 @@ void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *in, const
                                list->pair[last].row_j == list->pair[first].row_j;)
             ++last;
         choose_acting(list, in, first, last, next);
+        pls_wall_groups(list, in, first, last, next);
         inherit(list, first, last, next);
         for (size_t c = first; c < last; ++c)
         {
@@ -564,11 +588,11 @@ double pls_solid_depth(const pls_solid_list *list, const pls_contact_input *in, 
 
 pls_touch pls_solid_touch_now(const pls_solid_list *list, const pls_contact_input *in, size_t c)
 {
-    parts p;
+    pls_solid_parts p;
     pls_touch touch = {.delta = -INFINITY};
     pls_pair_state state = {{0.0}};
     pls_narrow_counts counts = {0};
-    pose_parts(list, in, c, &p);
+    pls_solid_parts_of(list, in, c, &p);
     if (bounds_overlap(p.a, p.b)) pls_narrow_phase(p.a, p.b, &in->laws->law[list->pair[c].law].narrow, &state, &touch, &counts);
     return touch;
 }

@@ -8,6 +8,15 @@
 /// Where each body with candidates is now. `rows`: numbers in list->row, first .. last.
 void pls_solid_pose(pls_solid_list *list, const pls_contact_input *input, const pls_bodies *bodies, const pls_shape *const *shape,
                     size_t first, size_t last);
+/// The two parts of a candidate where they are; kept in `own` unless the list has them.
+typedef struct pls_solid_parts
+{
+    const pls_posed *a, *b;
+    pls_posed own[2];
+} pls_solid_parts;
+
+void pls_solid_parts_of(const pls_solid_list *list, const pls_contact_input *input, size_t candidate, pls_solid_parts *out);
+
 /// One block: geometry, laws, forces into the candidates' slots. Counts go to `counts`.
 void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *input, const pls_solid_block *block, pls_contact_work *work,
                         pls_narrow_counts *counts);

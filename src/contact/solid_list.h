@@ -48,7 +48,7 @@ typedef struct pls_solid_pair
     uint8_t ended;   ///< touched at the step before the last and no more at the last
     uint8_t tracked; ///< bounding volumes overlap: the record is alive
     uint8_t lets_go; ///< j is a half-space that holds no body whose centre is behind its surface
-    uint8_t spare;
+    uint8_t on_wall; ///< j's part is a facet, and i's touches it by more than a point
 } pls_solid_pair;
 
 /// Images of a wall that are near the same body are close to each other: this many along each axis tell them apart.

@@ -7,8 +7,11 @@
 #include "shape/builtin.h"
 #include "shape/mesh.h"
 #include "shape/part_tree.h"
+#include "shape/wall_facets.h"
 
 #include "base/alloc.h"
+
+#include <string.h>
 
 #define ROUNDING                                                                                                                   \
     {                                                                                                                              \
@@ -46,6 +49,7 @@ typedef struct piece
     pls_polytope polytope;
     pls_vec3 vertex[3], normal[2];
     double values[1]; ///< rounding
+    pls_facet facet;
 } piece;
 
 typedef struct wall
@@ -175,30 +179,33 @@ static void fill_shape(piece *p, int dimension, double rounding)
                            .principal = pls_quat_identity()};
 }
 
-/// A piece between `corner`s; false where it has no area (no length).
-static bool make_piece(const pls_vec3 *corner, int dimension, double rounding, piece *p, pls_shape_part *part)
+/// Without area (length): nothing is between the corners.
+static bool is_nothing(const pls_vec3 *corner, int dimension)
 {
-    pls_vec3 middle = {0.0, 0.0, 0.0}, along = pls_sub(corner[1], corner[0]);
-    double longest = pls_length(along);
+    const pls_vec3 along = pls_sub(corner[1], corner[0]);
+    const double length = pls_length(along);
+    if (dimension == 2) return !(length > 0.0);
+    const pls_vec3 other = pls_sub(corner[2], corner[0]);
+    const double longest = fmax(length, fmax(pls_length(other), pls_length(pls_sub(other, along))));
+    return !(pls_length(pls_cross(along, other)) > thinnest * longest * longest);
+}
+
+/// A piece between `corner`s; its facet is known.
+static void make_piece(const pls_vec3 *corner, int dimension, double rounding, piece *p, pls_shape_part *part)
+{
+    pls_vec3 middle = {0.0, 0.0, 0.0};
     for (int k = 0; k < dimension; ++k) middle = pls_add(middle, pls_scale(corner[k], 1.0 / dimension));
     for (int k = 0; k < dimension; ++k) p->vertex[k] = pls_sub(corner[k], middle);
-    if (dimension == 3)
-    {
-        pls_vec3 other = pls_sub(corner[2], corner[0]), area = pls_cross(along, other);
-        longest = fmax(longest, fmax(pls_length(other), pls_length(pls_sub(other, along))));
-        if (!(pls_length(area) > thinnest * longest * longest)) return false;
-        p->normal[0] = pls_unit(area);
-    }
-    else
-    {
-        if (!(longest > 0.0)) return false;
-        p->normal[0] = pls_unit(pls_vec(along.y, -along.x, 0.0));
-    }
+    p->normal[0] = p->facet.normal;
     p->normal[1] = pls_scale(p->normal[0], -1.0);
     fill_polytope(p, dimension);
     fill_shape(p, dimension, rounding);
     *part = (pls_shape_part){.shape = &p->shape, .position = middle, .orientation = pls_quat_identity(), .scale = 1.0};
-    return true;
+}
+
+const pls_facet *pls_shape_facet(const pls_shape *shape)
+{
+    return shape->ops == &triangle_ops || shape->ops == &segment_ops ? &((const piece *)shape->data)->facet : NULL;
 }
 
 // ---- the wall -------------------------------------------------------------------------------------------------------------------------------------------------
@@ -224,21 +231,42 @@ static pls_status allocate(size_t most, wall **out)
     return status;
 }
 
-/// Triangles without area, which scanned meshes often have, add nothing to the edges of their neighbours and are left out.
+/// Pieces between corners, D each; those without area (length) add nothing to the edges of their neighbours and are left out.
+static pls_status from_corners(pls_vec3 (*corner)[3], size_t count, int dimension, double rounding, wall **out)
+{
+    wall *w = NULL;
+    pls_facet *facet = NULL;
+    size_t left = 0;
+    for (size_t k = 0; k < count; ++k)
+        if (!is_nothing(corner[k], dimension)) memmove(corner[left++], corner[k], sizeof *corner);
+    if (left == 0)
+        return pls_fail(PLS_INVALID_ARGUMENT, "none of the %zu pieces of the wall has %s", count, dimension == 3 ? "an area" : "a length");
+    pls_status status = pls_allocate(&facet, left, sizeof *facet, "pieces of a wall");
+    if (status == PLS_OK) status = pls_wall_facets(corner, left, dimension, facet);
+    if (status == PLS_OK) status = allocate(left, &w);
+    for (size_t k = 0; status == PLS_OK && k < left; ++k)
+    {
+        w->piece[k].facet = facet[k];
+        make_piece(corner[k], dimension, rounding, &w->piece[k], &w->part[k]);
+    }
+    if (status == PLS_OK) w->count = left, *out = w;
+    pls_release(&facet);
+    return status;
+}
+
+/// Scanned meshes often have triangles without area.
 static pls_status from_mesh(const pls_shape_input *input, const pls_mesh *mesh, wall **out)
 {
-    PLS_TRY(allocate(mesh->triangle_count, out));
-    wall *w = *out;
+    pls_vec3(*corner)[3] = NULL;
+    PLS_TRY(pls_allocate(&corner, mesh->triangle_count, sizeof *corner, "triangles of a mesh"));
     for (size_t t = 0; t < mesh->triangle_count; ++t)
-    {
-        pls_vec3 corner[3];
-        for (int c = 0; c < 3; ++c) corner[c] = pls_scale(mesh->vertex[mesh->triangle[t][c]], input->values[SCALE]);
-        if (make_piece(corner, 3, input->values[ROUNDED], &w->piece[w->count], &w->part[w->count])) ++w->count;
-    }
-    if (w->count > 0) return PLS_OK;
-    release(w);
-    return pls_fail(PLS_INVALID_ARGUMENT, "%s: none of the %zu triangles has an area; save the mesh anew", input->path,
-                    mesh->triangle_count);
+        for (int c = 0; c < 3; ++c) corner[t][c] = pls_scale(mesh->vertex[mesh->triangle[t][c]], input->values[SCALE]);
+    pls_status status = from_corners(corner, mesh->triangle_count, 3, input->values[ROUNDED], out);
+    if (status == PLS_INVALID_ARGUMENT)
+        status = pls_fail(PLS_INVALID_ARGUMENT, "%s: none of the %zu triangles has an area; save the mesh anew", input->path,
+                          mesh->triangle_count);
+    pls_release(&corner);
+    return status;
 }
 
 static pls_status prepare_mesh(const pls_shape_input *input, int dimension, void **data)
@@ -279,16 +307,15 @@ static pls_status check_points(const pls_shape_input *input)
 static pls_status prepare_line(const pls_shape_input *input, int dimension, void **data)
 {
     wall *w = NULL;
+    pls_vec3(*corner)[3] = NULL;
     PLS_TRY(check_points(input));
     const size_t count = input->values[CLOSED] != 0.0 ? input->point_count : input->point_count - 1;
-    PLS_TRY(allocate(count, &w));
-    for (size_t k = 0; k < count; ++k)
-    {
-        const pls_vec3 corner[2] = {input->points[k], input->points[(k + 1) % input->point_count]};
-        if (make_piece(corner, dimension, input->values[ROUNDED], &w->piece[w->count], &w->part[w->count])) ++w->count;
-    }
-    *data = w;
-    return PLS_OK;
+    PLS_TRY(pls_allocate(&corner, count, sizeof *corner, "pieces of a polyline"));
+    for (size_t k = 0; k < count; ++k) corner[k][0] = input->points[k], corner[k][1] = input->points[(k + 1) % input->point_count];
+    const pls_status status = from_corners(corner, count, dimension, input->values[ROUNDED], &w);
+    pls_release(&corner);
+    if (status == PLS_OK) *data = w;
+    return status;
 }
 
 static const pls_shape_part *parts(const pls_shape *shape, size_t *count)

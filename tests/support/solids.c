@@ -2,6 +2,8 @@
 
 #include "support/solids.h"
 
+#include "contact/solid_list.h"
+#include "contact/wall_touch.h"
 #include "contact/faces.h"
 #include "shape/builtin.h"
 #include "support/numbers.h"
@@ -110,6 +112,26 @@ pls_touch solids_touch(const pls_posed *a, const pls_posed *b, pls_faces faces, 
     pls_touch t = {0};
     pls_narrow_phase(a, b, &options, &state, &t, &counts);
     return t;
+}
+
+pls_touch solids_wall_touch(const pls_posed *a, const pls_posed *wall, pls_faces faces, double area)
+{
+    pls_wall_sum sum = pls_wall_sum_of(a);
+    double agreed = 0.0;
+    for (uint32_t k = 0; k < wall->shape->part_count; ++k)
+    {
+        const pls_posed facet = pls_posed_part(wall, k);
+        const pls_facet *seams = pls_shape_facet(facet.shape);
+        const double front = pls_dot(pls_posed_turn(&facet, seams->normal), pls_sub(facet.position, wall->position)) > 0.0 ? 1.0 : -1.0;
+        const pls_touch depth = {.delta = 0.0, .normal = pls_scale(pls_posed_turn(&facet, seams->normal), -front), .point = facet.position};
+        if (agreed == 0.0) agreed = front;
+        assert_true(front == agreed); // facets of one wall have normals on one side, whatever the file says
+        pls_wall_add(&sum, &facet, seams, front, &depth);
+    }
+    pls_touch out = {.delta = 0.0};
+    const pls_narrow_options options = solids_options(faces, area);
+    pls_wall_touch(&sum, &options, &out);
+    return out;
 }
 
 bool solids_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,

@@ -25,6 +25,8 @@ pls_shape *solids_stone(int dimension, int count, double rounding);
 pls_narrow_options solids_options(pls_faces faces, double area);
 /// The narrow phase without memory.
 pls_touch solids_touch(const pls_posed *a, const pls_posed *b, pls_faces faces, double area);
+/// Of a body and all facets of a wall, touched as one and seen from outside of a closed wall about its origin.
+pls_touch solids_wall_touch(const pls_posed *a, const pls_posed *wall, pls_faces faces, double area);
 /// `pls_faces_touch` for those who do not ask whether there is a record.
 bool solids_faces_touch(const pls_posed *a, const pls_posed *b, const pls_depth *depth, const pls_narrow_options *options,
                         pls_overlap_record *record, pls_touch *out);

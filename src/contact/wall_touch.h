@@ -1,0 +1,33 @@
+// wall_touch.h -- bodies on walls of pieces: the pieces that a body lies over make one contact.
+#ifndef PLS_CONTACT_WALL_TOUCH_H
+#define PLS_CONTACT_WALL_TOUCH_H
+
+#include "contact/facet.h"
+#include "contact/narrow_phase.h"
+
+/// Does a shape touch this facet by more than a point? Always the same answer for the same two: polytopes, cylinders, capsules and what is known by pieces of its surface do.
+bool pls_is_wall_pair(const pls_posed *a, const pls_posed *facet, const pls_narrow_options *options);
+
+/// Does such a pair need no penetration depth?
+bool pls_wall_needs_no_depth(const pls_posed *a, const pls_posed *facet);
+
+/// One body on some facets of a wall.
+typedef struct pls_wall_sum
+{
+    const pls_posed *a;
+    pls_vec3 origin; ///< of the integrals
+    pls_overlap_integrals P;
+    double depth;         ///< the largest penetration depth of the facets so far [m]
+    double size;          ///< of the largest body so far [m]
+    pls_half_space front; ///< of the facet that has it, about the origin, less the body's margin
+    int facets;           ///< that something is behind
+} pls_wall_sum;
+
+pls_wall_sum pls_wall_sum_of(const pls_posed *a);
+/// What is behind one more facet, whose depth or gap is `depth` (its `delta`, `normal` and `point`), as seen from its `front`; `seams`: how it lies to its neighbours. Returns whether
+/// anything is.
+bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *seams, double front, const pls_touch *depth);
+/// The contact by options->faces. False: nothing touches; then nothing is written but `delta`, 0.
+bool pls_wall_touch(pls_wall_sum *sum, const pls_narrow_options *options, pls_touch *out);
+
+#endif
