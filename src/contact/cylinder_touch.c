@@ -476,7 +476,6 @@ bool pls_cylinder_behind(const pls_posed *a, const pls_prism *prism, pls_vec3 *o
     cylinder q = {.faces = prism->faces, .planes = prism->planes};
     for (int k = 0; k < q.planes; ++k)
         q.plane[k] = (pls_half_space){prism->plane[k].normal, prism->plane[k].offset - pls_dot(prism->plane[k].normal, shift)};
-    q.plane[0].offset += c.margin;
     overlap_of(&q, a, c, pls_scale(prism->plane[0].normal, -1.0), *origin, origin, P);
     return P->volume > 0.0;
 }

@@ -146,10 +146,11 @@ bool pls_faces_behind(const pls_posed *a, const pls_posed *facet, const pls_pris
 {
     pls_near_body A, B;
     take_wall(a, prism, origin, &B);
-    const pls_vec3 n = pls_scale(B.face[0].plane.normal, -1.0);
+    // Seen from an origin that is moved by the margin as well, corners of the core are where they are.
+    const pls_vec3 n = pls_scale(B.face[0].plane.normal, -1.0), moved = pls_add(*origin, pls_scale(n, a->shape->margin * a->scale));
     double height[PLS_MOST_CORNERS];
-    const double reach = pls_near_heights(a, start_of(a, *origin, n), n, height), size = fmax(a->size, facet->size);
-    const pls_slab between = pls_slab_of(*origin, n, height, NULL, reach, 0.0, size);
+    const double reach = pls_near_heights(a, start_of(a, moved, n), n, height), size = fmax(a->size, facet->size);
+    const pls_slab between = pls_slab_of(moved, n, height, NULL, reach, 0.0, size);
     if (!(between.deep > least_depth * a->size)) return false;
     pls_near_faces(a, facet, &between, &A, &B);
     PLS_SIMD_SELECT(pls_overlap_integrate)(&A, &B, a->shape->dimension, PLS_OVERLAP_BLUR * size, P);

@@ -29,7 +29,7 @@ bool pls_faces_touch_again(const pls_posed *a, const pls_posed *b, const pls_nar
 bool pls_has_faces(const pls_shape *shape);
 
 /// Integrals over what of a body with faces is behind a facet, about a point of its front: `origin`, near which and about which the prism is, is moved there. Of rounded bodies the core
-/// counts, moved by its margin towards the front. False: nothing is.
+/// counts. False: nothing is.
 bool pls_faces_behind(const pls_posed *a, const pls_posed *facet, const pls_prism *prism, pls_vec3 *origin, pls_overlap_integrals *P);
 
 #endif

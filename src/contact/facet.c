@@ -64,7 +64,7 @@ static bool at_one_place(const pls_posed *a, int k, const pls_posed *b, int j)
     return fmin(pls_length(pls_sub(p, q)) + pls_length(pls_sub(r, s)), pls_length(pls_sub(p, s)) + pls_length(pls_sub(r, q))) < most;
 }
 
-int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_posed *other, uint32_t neighbour)
+int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_posed *other)
 {
     const pls_facet *beyond = pls_shape_facet(other->shape);
     const int sides = facet->shape->dimension;
@@ -73,7 +73,7 @@ int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_pos
         {
             if (beyond->neighbour[j] != PLS_NO_FACET || !at_one_place(facet, k, other, j)) continue;
             const pls_vec3 on = pls_posed_turn_back(facet, pls_posed_turn(other, pls_scale(beyond->side[j], -1.0)));
-            pls_facet_join(seams, k, neighbour, on, pls_dot(seams->normal, beyond->normal) > PLS_LEVEL_FACETS);
+            pls_facet_join(seams, k, beyond->number, on, pls_dot(seams->normal, beyond->normal) > PLS_LEVEL_FACETS);
             return k;
         }
     return -1;
@@ -81,22 +81,54 @@ int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_pos
 
 // ---- the prism --------------------------------------------------------------------------------------------------------------------------------------------
 
-pls_prism pls_facet_prism(const pls_posed *facet, const pls_facet *f, pls_vec3 origin, double front)
+static const double bevelled = 0.02;       ///< bend from which raised faces are [rad]
+static const double almost_level = 0.9998; ///< its cosine
+
+static void add_plane(pls_prism *p, pls_vec3 normal, pls_vec3 through, double raised)
 {
-    const pls_vec3 *v = facet->shape->polytope->vertex, start = pls_sub(facet->position, origin);
-    const double margin = facet->shape->margin * facet->scale;
-    pls_vec3 n = pls_scale(pls_posed_turn(facet, f->normal), front);
-    pls_prism p = {.faces = 1, .planes = 1};
-    p.plane[0] = (pls_half_space){n, pls_dot(n, pls_add(start, pls_scale(pls_posed_turn(facet, v[0]), facet->scale))) + margin};
-    for (int joined = 0; joined < 2; ++joined)
-        for (int k = 0; k < facet->shape->dimension; ++k)
-        {
-            const bool free = f->neighbour[k] == PLS_NO_FACET;
-            if (free == joined || (joined && pls_seam_is_valley(f, k, front))) continue;
-            n = pls_posed_turn(facet, f->side[k]);
-            const double offset = pls_dot(n, pls_add(start, pls_scale(pls_posed_turn(facet, v[k]), facet->scale)));
-            p.plane[p.planes++] = (pls_half_space){n, offset + (free ? margin : 0.0)};
-            p.faces += free;
-        }
+    p->plane[p->planes++] = (pls_half_space){normal, pls_dot(normal, through) + raised};
+}
+
+/// Cuts the corner between two raised planes, from where the one touches the round edge to where the other does.
+static void add_bevel(pls_prism *p, pls_vec3 one, pls_vec3 other, pls_vec3 through, double raised)
+{
+    const pls_vec3 middle = pls_add(one, other);
+    const double length = pls_length(middle);
+    if (raised > 0.0 && length > 1e-3) add_plane(p, pls_scale(middle, 1.0 / length), through, 0.5 * length * raised);
+}
+
+pls_prism pls_facet_prism(const pls_posed *facet, const pls_facet *f, pls_vec3 origin, double front, double margin)
+{
+    const pls_vec3 start = pls_sub(facet->position, origin);
+    const int sides = facet->shape->dimension;
+    const double raised = margin + facet->shape->margin * facet->scale;
+    pls_vec3 corner[3], side[3];
+    for (int k = 0; k < sides; ++k)
+    {
+        corner[k] = pls_add(start, pls_scale(pls_posed_turn(facet, facet->shape->polytope->vertex[k]), facet->scale));
+        side[k] = pls_posed_turn(facet, f->side[k]);
+    }
+    const pls_vec3 n = pls_scale(pls_posed_turn(facet, f->normal), front);
+    pls_prism p = {.planes = 0};
+    add_plane(&p, n, corner[0], raised);
+    for (int k = 0; k < sides; ++k)
+    {
+        const bool free = f->neighbour[k] == PLS_NO_FACET;
+        const double bend = f->bend[k] * front;
+        if (free) add_plane(&p, side[k], corner[k], raised);
+        if (free) add_bevel(&p, n, side[k], corner[k], raised);
+        if (free || !(bend > bevelled)) continue;
+        // The other front: this one mirrored at the plane between the two.
+        add_bevel(&p, n, pls_sub(n, pls_scale(side[k], 2.0 * pls_dot(n, side[k]))), corner[k], raised);
+    }
+    for (int k = 0; k < sides; ++k) // of corners likewise
+    {
+        const double level = f->corner_level[k];
+        if (!(raised > 0.0) || f->corner_form[k] * front <= 0.0 || sides == 2 || !(level > 0.0) || level > almost_level) continue;
+        add_plane(&p, pls_scale(pls_posed_turn(facet, f->corner_normal[k]), front), corner[k], level * raised);
+    }
+    p.faces = p.planes;
+    for (int k = 0; k < sides; ++k)
+        if (f->neighbour[k] != PLS_NO_FACET && !pls_seam_is_valley(f, k, front)) add_plane(&p, side[k], corner[k], 0.0);
     return p;
 }

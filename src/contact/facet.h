@@ -20,7 +20,7 @@ typedef struct pls_facet_view
 pls_facet_view pls_facet_seen_from(const pls_posed *facet, const pls_facet *seams, pls_vec3 X);
 
 /// Is a free side of one facet at the same place as one of another? Then they are joined there in `seams`, which are those of the first one, and the side is returned; else -1.
-int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_posed *other, uint32_t neighbour);
+int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_posed *other);
 
 /// Does a seam, as seen from the front, turn towards it, and more than within a patch?
 static inline bool pls_seam_is_valley(const pls_facet *f, int k, double front) { return !f->level[k] && f->bend[k] * front < 0.0; }
@@ -28,13 +28,14 @@ static inline bool pls_seam_is_valley(const pls_facet *f, int k, double front) {
 /// What is behind a facet.
 struct pls_prism
 {
-    int faces;               ///< those that depth counts from: the front, then free sides
-    int planes;              ///< all; the rest are planes that halve the angle to the facet beyond
-    pls_half_space plane[4]; ///< outwards
+    int faces;                ///< those that depth counts from: the front, free sides, and bevels
+    int planes;               ///< all; the rest are planes that halve the angle to the facet beyond
+    pls_half_space plane[10]; ///< outwards
 };
 
-/// About `origin`, the margin before the facet. Behind a facet is what is nearer to it than to its neighbours; in a valley all that is behind its plane, so that a body comes
-/// in by the front only. Near a free side depth counts from there, too: it grows from zero wherever a body comes from.
-pls_prism pls_facet_prism(const pls_posed *facet, const pls_facet *seams, pls_vec3 origin, double front);
+/// About `origin`, the front raised by `margin` beside that of the facet. Behind a facet is what is nearer to it than to its neighbours; in a valley all that is behind its plane, so
+/// that a body comes in by the front only. Near a free side depth counts from there, too: it grows from zero wherever a body comes from. Raised faces meet in bevels, inside of the
+/// round edges that the facets have with that margin: who overlaps the one overlaps the other.
+pls_prism pls_facet_prism(const pls_posed *facet, const pls_facet *seams, pls_vec3 origin, double front, double margin);
 
 #endif

@@ -594,7 +594,8 @@ void PLS_SIMD(pls_overlap_integrate)(const pls_near_body *a, const pls_near_body
     add_faces(&w, a, b, false, wall && b->planes == 1 ? 0.0 : blur, w.seen_a, w.seen_b, &in_b);
     integrate(&w.batch, &in_b);
     out->area = vec_of(in_b.area, 1.0), out->area_moment = vec_of(in_b.area_moment, 1.0);
-    closed = in_b; // the front of a wall lies at no depth and, as seen from an origin on it, has no share in the volume; the sides of a prism do
+    closed =
+        in_b; // the front of a wall lies at no depth and, as seen from an origin on it, has no share in the volume; the sides of a prism do
     if (wall && b->planes > 1)
     {
         add_sides(&w, b, a, blur, &closed);

@@ -3,6 +3,9 @@
 // Behind the facets lies a field, the depth below the surface: each facet has that of its prism (facet.h). Energies and forces are integrals over what of the body is there, as in
 // faces.c; they add up, and the laws act on the sums. So a box over a seam of two triangles rests on one spring, not on two; it passes the seam without a jump, as what comes to
 // the one comes off the other; and the edge of a table of triangles pushes as that of a box.
+//
+// Of rounded bodies the core counts, in the field behind fronts that are raised by the margin. Over level places that is the same; over a ridge the raised fronts meet in a bevel,
+// not in a round edge.
 
 #include "contact/wall_touch.h"
 
@@ -71,7 +74,8 @@ bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *se
     if (kind == CYLINDER) origin = pls_add(origin, pls_scale(depth->normal, 0.5 * depth->delta)); // on A
     if (kind == PIECES) origin = pls_posed_world(a, a->shape->mass.centre);
     const pls_vec3 start = origin;
-    const pls_prism prism = pls_facet_prism(facet, seams, origin, front);
+    const double margin = kind == PIECES ? 0.0 : a->shape->margin * a->scale;
+    const pls_prism prism = pls_facet_prism(facet, seams, origin, front, margin);
     pls_overlap_integrals P;
     double deep = depth->delta;
     bool any = false;
@@ -90,9 +94,9 @@ bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *se
         move_origin(&P, pls_sub(sum->origin, origin));
     if (sum->facets == 0 || deep > sum->depth)
     {
-        const pls_vec3 n = prism.plane[0].normal;
+        const pls_half_space raised = prism.plane[0];
         sum->depth = fmax(deep, 0.0);
-        sum->front = (pls_half_space){n, prism.plane[0].offset + pls_dot(n, pls_sub(start, sum->origin))};
+        sum->front = (pls_half_space){raised.normal, raised.offset - margin + pls_dot(raised.normal, pls_sub(start, sum->origin))};
     }
     sum->size = fmax(sum->size, facet->size);
     add(&sum->P, &P);
@@ -120,6 +124,11 @@ bool pls_wall_touch(pls_wall_sum *sum, const pls_narrow_options *options, pls_to
     }
     else if (a->shape->sample)
         pls_sampled_area(a->size, &t);
+    else if (!line)
+    {
+        const pls_vec3 to_surface = pls_scale(t.normal, a->shape->margin * a->scale);
+        t.point = pls_add(t.point, to_surface), t.middle = pls_add(t.middle, to_surface);
+    }
     t.point = pls_add(t.point, sum->origin), t.middle = pls_add(t.middle, sum->origin);
     t.depth = t.reach = sum->depth;
     t.stands = true;

@@ -19,7 +19,7 @@ typedef struct pls_wall_sum
     pls_overlap_integrals P;
     double depth;         ///< the largest penetration depth of the facets so far [m]
     double size;          ///< of the largest body so far [m]
-    pls_half_space front; ///< of the facet that has it, about the origin, less the body's margin
+    pls_half_space front; ///< of the facet that has it, about the origin
     int facets;           ///< that something is behind
 } pls_wall_sum;
 

@@ -6,6 +6,8 @@
 
 #include <stdlib.h>
 
+static const double straight = 1e-6; ///< bend of what goes straight on [rad]
+
 /// A side of a piece, by the numbers of its corners.
 typedef struct side
 {
@@ -221,7 +223,8 @@ static void agree_on_fronts(seams *s)
 
 static void find_patches(seams *s)
 {
-    for (size_t c = 0; c < s->count; ++c) s->facet[c].normal = normal_of(s, (uint32_t)c), s->facet[c].patch = PLS_NO_FACET;
+    for (size_t c = 0; c < s->count; ++c)
+        s->facet[c].number = (uint32_t)c, s->facet[c].normal = normal_of(s, (uint32_t)c), s->facet[c].patch = PLS_NO_FACET;
     for (size_t first = 0; first < s->count; ++first)
     {
         if (s->facet[first].patch != PLS_NO_FACET) continue;
@@ -270,25 +273,52 @@ static void tell_of_sides(seams *s, uint32_t f)
     }
 }
 
+/// Both sides of a piece at its corner; of a segment the one end.
+static void bends_at(const seams *s, uint32_t corner, double *least, double *most, bool *free)
+{
+    const uint32_t d = (uint32_t)s->dimension, k = corner % d, before = (k + d - 1) % d;
+    const pls_facet *facet = &s->facet[corner / d];
+    const uint32_t sides[2] = {k, d == 3 ? before : k};
+    for (int j = 0; j < 2; ++j)
+    {
+        *least = fmin(*least, facet->bend[sides[j]]), *most = fmax(*most, facet->bend[sides[j]]);
+        *free = *free || facet->neighbour[sides[j]] == PLS_NO_FACET;
+    }
+}
+
+/// Corners first .. last of the sorted ones are at one place.
+static void tell_of_corner(seams *s, size_t first, size_t last)
+{
+    const uint32_t d = (uint32_t)s->dimension;
+    double least = 0.0, most = 0.0;
+    bool free = false;
+    for (size_t c = first; c < last; ++c) bends_at(s, s->place[c].corner, &least, &most, &free);
+    const int form = free ? 0 : least > -straight ? 1 : most < straight ? -1 : 0;
+    for (size_t c = first; c < last; ++c)
+    {
+        const uint32_t at = s->place[c].corner;
+        pls_facet *own = &s->facet[at / d];
+        pls_vec3 sum = {0.0, 0.0, 0.0};
+        for (size_t e = first; e < last; ++e)
+        {
+            const uint32_t other = s->place[e].corner;
+            sum = pls_add(sum, pls_scale(s->facet[other / d].normal, angle_at(s, other / d, (int)(other % d))));
+        }
+        const pls_vec3 mean = unit_or(sum, own->normal);
+        double level = 1.0;
+        for (size_t e = first; e < last; ++e) level = fmin(level, pls_dot(mean, s->facet[s->place[e].corner / d].normal));
+        own->corner_normal[at % d] = mean, own->corner_level[at % d] = level, own->corner_form[at % d] = form;
+    }
+}
+
 static void tell_of_corners(seams *s)
 {
-    const size_t d = (size_t)s->dimension, all = d * s->count;
+    const size_t all = (size_t)s->dimension * s->count;
     for (size_t first = 0, last; first < all; first = last)
     {
         const uint32_t number = s->number[s->place[first].corner];
         for (last = first + 1; last < all && s->number[s->place[last].corner] == number;) ++last;
-        for (size_t c = first; c < last; ++c)
-        {
-            const uint32_t at = s->place[c].corner;
-            pls_facet *own = &s->facet[at / d];
-            pls_vec3 sum = {0.0, 0.0, 0.0};
-            for (size_t e = first; e < last; ++e)
-            {
-                const uint32_t other = s->place[e].corner;
-                sum = pls_add(sum, pls_scale(s->facet[other / d].normal, angle_at(s, other / (uint32_t)d, (int)(other % d))));
-            }
-            own->corner_normal[at % d] = unit_or(sum, own->normal);
-        }
+        tell_of_corner(s, first, last);
     }
 }
 

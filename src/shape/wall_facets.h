@@ -13,14 +13,17 @@
 /// Of a triangle side k is that from corner k to the next one, of a segment its end k.
 typedef struct pls_facet
 {
+    uint32_t number;           ///< of the piece in its wall, as it was made
     pls_vec3 normal;           ///< on the one side, the same of all pieces that hang together
     uint32_t patch;            ///< pieces that hang together and are level to 15 degrees have the same
-    uint32_t neighbour[3];     ///< beyond side k; PLS_NO_FACET: the side is free
+    uint32_t neighbour[3];     ///< number of the piece beyond side k; PLS_NO_FACET: the side is free
     bool level[3];             ///< the neighbour is of the same patch
     double bend[3];            ///< by which the wall turns away from `normal` there; negative: towards it [rad]
     pls_vec3 side[3];          ///< unit, outwards: normal of the plane that halves the angle of the seam
     pls_vec3 side_normal[3];   ///< unit: mean of the normals of both pieces
     pls_vec3 corner_normal[3]; ///< unit: mean of the normals of all pieces at corner k, by their angles
+    double corner_level[3];    ///< the least of their cosines with it
+    int corner_form[3];        ///< 1: no seam at corner k turns towards the normal, and none is free; -1: none turns away; 0: else
 } pls_facet;
 
 /// Beyond side k lies facet `neighbour`, which goes on along `beyond`, at right angles to the side.

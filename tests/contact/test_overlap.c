@@ -46,7 +46,6 @@ static void take_body(const pls_posed *p, const pls_posed *other, pls_vec3 origi
     else if (is_facet(p)) // that has no neighbours: depth counts from all its sides
     {
         const bool flat = p->shape->dimension == 2;
-        const double margin_of_facet = p->shape->margin * p->scale;
         pls_vec3 x[3];
         for (int k = 0; k < (flat ? 2 : 3); ++k) x[k] = pls_sub(pls_posed_world(p, t->vertex[k]), origin);
         if (flat) x[2] = pls_add(x[0], pls_vec(0, 0, 1));
@@ -64,7 +63,6 @@ static void take_body(const pls_posed *p, const pls_posed *other, pls_vec3 origi
             for (int k = 0; k < 3; ++k)
                 out->plane[1 + k] = half_space(pls_scale(pls_unit(pls_cross(pls_sub(x[(k + 1) % 3], x[k]), n)), turn), x[k]);
         out->faces = out->planes = flat ? 3 : 4;
-        for (int k = 0; k < out->planes; ++k) out->plane[k].offset += margin_of_facet;
     }
     else
         for (uint32_t f = 0; f < t->face_count; ++f)
@@ -108,6 +106,38 @@ static void add_cells(const body *s, const pls_clipped *P, double weight, push *
     }
 }
 
+static bool across(const pls_half_space *f, const pls_half_space *g) { return fabs(pls_dot(f->normal, g->normal)) < 1e-9; }
+
+/// Through the foot of the origin on what planes at right angles to each other have in common, and on by the margin to the middle of where they touch round edges.
+static void add_bevel(body *s, const pls_half_space *const *of, int count, double by)
+{
+    pls_vec3 sum = {0, 0, 0}, foot = sum;
+    for (int k = 0; k < count; ++k)
+    {
+        sum = pls_add(sum, of[k]->normal);
+        foot = pls_add(foot, pls_scale(of[k]->normal, of[k]->offset));
+    }
+    s->plane[s->planes] = half_space(pls_unit(sum), foot);
+    s->plane[s->planes++].offset += by / sqrt(count);
+}
+
+/// Faces are raised, and bevels between faces at right angles to each other cut edges and corners; of a facet only the edges of its front.
+static void raise(body *s, bool facet, double by)
+{
+    const pls_half_space *p = s->plane;
+    const int faces = s->faces;
+    for (int f = 0; f < faces; ++f)
+        for (int g = 0; g < f && (g == 0 || !facet); ++g)
+        {
+            if (!across(&p[f], &p[g])) continue;
+            add_bevel(s, (const pls_half_space *const[]){&p[f], &p[g]}, 2, by);
+            for (int h = 0; h < g && !facet; ++h)
+                if (across(&p[f], &p[h]) && across(&p[g], &p[h])) add_bevel(s, (const pls_half_space *const[]){&p[f], &p[g], &p[h]}, 3, by);
+        }
+    for (int f = 0; f < faces; ++f) s->plane[f].offset += by;
+    s->faces = s->planes;
+}
+
 /// What the laws say, about `origin`.
 typedef struct answer
 {
@@ -124,7 +154,9 @@ static bool ask_oracle(const pls_posed *a, const pls_posed *b, bool wall, pls_ve
     static pls_clipped P;
     const bool flat = a->shape->dimension == 2;
     take_body(b, a, origin, pls_vec(0, 0, 0), &B);
-    take_body(a, b, origin, pls_scale(B.plane[0].normal, wall ? -a->shape->margin * a->scale : 0.0), &A);
+    take_body(a, b, origin, pls_vec(0, 0, 0), &A);
+    const double raised = a->shape->margin * a->scale + (is_facet(b) ? b->shape->margin * b->scale : 0.0);
+    if (wall && raised > 0.0) raise(&B, is_facet(b), raised);
     const pls_vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double half[3] = {4.0, 4.0, flat ? 0.5 : 4.0};
     pls_clipped_block(&P, pls_vec(0, 0, 0), axis, half, 2);
@@ -320,14 +352,13 @@ static void bodies_on_a_block_of_triangles_agree(void **state)
     pls_shape *block = mesh_of("block.obj", text, 0.0), *same = solids_box(3, 0.5, 0.5, 0.5, 0.0);
     const pls_posed whole = pls_pose(same, pls_vec(0, 0, 0), same->principal, 1.0),
                     wall = pls_pose(block, pls_vec(0, 0, 0), pls_quat_identity(), 1.0);
-    int seen = 0;
     for (int round = 0; round < 200; ++round)
     {
-        pls_shape *s = round & 1 ? random_shape(3) : solids_box(3, 0.5, 0.3, 0.4, 0.0);
+        pls_shape *s = round & 1 ? random_shape(3)
+                                 : solids_box(3, 0.5, 0.3, 0.4, round & 2 ? 0.05 : 0.0); // of rounded ones the core behind raised faces
         const double depth = pow(10.0, solids_uniform(-3.0, -1.0)), tolerance = 1e-10 + 1e-14 / (depth * depth);
         const pls_posed a = touching(&whole, pls_pose(s, pls_vec(0, 0, 0), random_turn(3), 1.0), solids_direction(3), depth);
-        for (pls_faces faces = PLS_FACES_MANIFOLD; s->margin == 0.0 && faces <= PLS_FACES_VOLUME;
-             ++faces, ++seen) // rounded cores go along the front of each facet
+        for (pls_faces faces = PLS_FACES_MANIFOLD; faces <= PLS_FACES_VOLUME; ++faces)
         {
             const pls_touch t = solids_wall_touch(&a, &wall, faces, 1.0);
             const double off = apart(&a, &whole, true, &t, t.point, faces, false);
@@ -335,7 +366,6 @@ static void bodies_on_a_block_of_triangles_agree(void **state)
         }
         pls_shape_free(s);
     }
-    assert_true(seen > 200);
     pls_shape_free(block), pls_shape_free(same);
 }
 

@@ -34,6 +34,7 @@ const verify_entry verify_cases[] = {
     {"solid-cloud", "Momenta of a free cloud of 500 grains of all shapes", case_solid_cloud},
     {"solid-book", "Energy book: impacts of all shapes with friction", case_solid_book},
     {"solid-crowd", "Energy book: grains of all shapes pressed together", case_solid_crowd},
+    {"wall-edges", "Flights against edges, rims and seams of walls of triangles", case_wall_edges},
     {"free-fall", "Free fall", case_free_fall},
     {"bouncing", "Bouncing on a plane", case_bouncing},
     {"driven", "Driven bodies", case_driven},

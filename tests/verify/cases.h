@@ -76,6 +76,7 @@ verify_case case_box_at_rest, case_box_comes_to_rest, case_stack, case_box_on_sl
 verify_case case_lying, case_pile, case_values_alone;
 verify_case case_rolling_solids, case_ellipsoid_settles, case_box_top;
 verify_case case_solid_cloud, case_solid_book, case_solid_crowd;
+verify_case case_wall_edges;
 verify_case case_column_stress, case_single_contact_tangent, case_fcc_tangent;
 verify_case case_hertz_force, case_hertz_collision, case_mindlin;
 verify_case case_dilating, case_logistic;
