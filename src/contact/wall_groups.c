@@ -11,8 +11,8 @@
 
 #include "contact/wall_touch.h"
 
-static const double nearness = 2.0; ///< of the deepest depth: gap up to which a facet may matter
-static const double holds = 0.05;   ///< of the body's size: gap up to which a facet that touched does
+static const double nearness = 2.0;         ///< of the deepest depth: gap up to which a facet may matter
+static const double holds = PLS_NARROW_FAR; ///< of the body's size: gap up to which a facet that touched does
 
 typedef struct facets
 {
