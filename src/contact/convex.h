@@ -62,6 +62,7 @@ typedef struct pls_gap
     pls_vec3 v;      ///< point of M nearest to the origin [m]
     double distance; ///< its length; 0 if overlapping
     bool overlap;    ///< or closer than PLS_TOUCHING of the size, where v has no direction to speak of
+    double open;     ///< by how much less it may be, as far as support points tell [m]: an overlap if that is all of it
     bool converged;
     int iterations;
     int support_calls;

@@ -47,7 +47,7 @@ static bool gap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls
 {
     pls_gap gap = pls_gjk(a, b, pls_vec(0.0, 0.0, 0.0), s);
     count_in(d, &gap);
-    if (gap.overlap) return false;
+    if (gap.overlap || gap.open >= gap.distance) return false;
     d->delta = -gap.distance;
     d->normal = pls_scale(gap.v, -1.0 / gap.distance);
     d->converged = gap.converged;
