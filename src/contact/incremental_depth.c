@@ -155,7 +155,7 @@ static void overlap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s,
         d->local = false;
         if (d->delta <= 0.0 || is_least(a, b, s, d)) return;
         pls_simplex kept = *s;
-        if (!pls_epa_less(a, b, open_of(a, b, d->delta), d))
+        if (!pls_epa_less(a, b, open_of(a, b, d->delta), NULL, d))
         {
             *s = kept;
             return;
