@@ -333,6 +333,16 @@ static double slope_at(side *a, side *b, pls_vec3 along, pls_vec3 n0, double ang
     return pls_dot(*apart, pls_cross(along, *n));
 }
 
+/// Move the point on a cylinder's rim along it by what the other side's is off across the edge, `off` along e from this one.
+static void move_on_rim(side *s, pls_vec3 e, double off)
+{
+    if (!s->cylinder || s->kind != CORNER) return;
+    const pls_vec3 own = pls_posed_own(s->p, s->point);
+    const pls_vec3 tangent = pls_posed_turn(s->p, pls_unit(pls_vec(-own.y, own.x, 0.0)));
+    const double across = pls_dot(tangent, e);
+    if (fabs(across) > 0.1) s->on = pls_add(s->on, pls_scale(tangent, off / across));
+}
+
 /// Where Newton's steps go wild: along an edge that all but lies in a cylinder's end the point on the rim runs by its radius within that small angle. Where the slope changes sign is the place.
 static bool find_turn(side *a, side *b, const limits *l, pls_vec3 *n, double *F, pls_vec3 *gap, int *iterations)
 {
@@ -363,7 +373,11 @@ static bool find_turn(side *a, side *b, const limits *l, pls_vec3 *n, double *F,
         }
     }
     *F = pls_dot(apart, *n);
-    *gap = pls_sub(apart, pls_scale(*n, *F));
+    if (a->cylinder)
+        move_on_rim(a, pls_cross(along, *n), -slope);
+    else
+        move_on_rim(b, pls_cross(along, *n), slope);
+    *gap = pls_sub(pls_sub(a->on, b->on), pls_scale(*n, *F));
     return fabs(slope) < steepest * size;
 }
 

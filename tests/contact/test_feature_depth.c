@@ -124,6 +124,7 @@ static void edge_along_an_end(void **state)
         assert_true(fabs(d.delta - delta) < 1e-13);
         assert_true(gap_between(d.normal, n) < 1e-9);
         assert_true(gap_between(d.on_a, rim) < 1e-9);
+        assert_true(gap_between(pls_sub(d.on_a, d.on_b), pls_scale(d.normal, d.delta)) < 1e-14);
     }
     pls_shape_free(can), pls_shape_free(pill);
 }
