@@ -27,7 +27,6 @@ typedef struct pls_convex
     double margin;    ///< of rounding [m]
     bool polytope;    ///< the core is one: depths are exact after finitely many support points
     int dimension;    ///< 2 (all z = 0) or 3
-    bool smooth;      ///< nowhere sharp: then no two local minima of a shallow depth lie side by side
 } pls_convex;
 
 typedef struct pls_depth
@@ -62,6 +61,7 @@ typedef struct pls_gap
     pls_vec3 v;      ///< point of M nearest to the origin [m]
     double distance; ///< its length; 0 if overlapping
     bool overlap;    ///< or closer than PLS_TOUCHING of the size, where v has no direction to speak of
+    double open;     ///< by how much less it may be, as far as support points tell [m]: an overlap if that is all of it
     bool converged;
     int iterations;
     int support_calls;
@@ -93,9 +93,17 @@ pls_gap pls_gjk(const pls_convex *a, const pls_convex *b, pls_vec3 shift, pls_si
 /// Depth of cores that overlap, from GJK's last simplex, to `tolerance` [m]. Cores only, no margins; `simplex` becomes the nearest face.
 pls_depth pls_epa(const pls_convex *a, const pls_convex *b, double tolerance, pls_simplex *simplex);
 
-/// Is there a direction with less depth than at `known`, a local minimum of F? True: `known` is one that has, to be followed to its own minimum. False: `known` is the
-/// least, but for local minima closer to it than 1e-3 rad (1e-2 where a set is smooth); `converged` tells whether that is certain to PLS_LEFT_OPEN of the size.
-bool pls_epa_less(const pls_convex *a, const pls_convex *b, double tolerance, pls_depth *known);
+/// A minimum of F near a normal, of cores, by exact means. False: there is none to be had.
+typedef struct pls_exact_depth
+{
+    bool (*near)(const void *self, pls_vec3 n, pls_depth *d);
+    const void *self;
+} pls_exact_depth;
+
+/// Is there a direction with less depth than at `known`, a local minimum of F? True: `known` is one that has, to be followed to its own minimum. False: `known` is the least to `tolerance`, and
+/// to 5e-7 of itself among directions closer to it than 1e-3 rad; `converged` tells whether that is certain to PLS_LEFT_OPEN of the size; `local`, that faces were too thin to tell, and
+/// `exact` null or of no help.
+bool pls_epa_less(const pls_convex *a, const pls_convex *b, double tolerance, const pls_exact_depth *exact, pls_depth *known);
 
 #define PLS_LEFT_OPEN 1e-7
 

@@ -11,6 +11,8 @@
 #include <float.h>
 #include <stdint.h>
 
+static const double rounding = 5e-17; // of coordinates, by the sizes
+
 enum { MOST_POINTS = 400, MOST_FACES = 2 * MOST_POINTS };
 
 typedef struct face
@@ -306,34 +308,69 @@ pls_depth pls_epa(const pls_convex *a, const pls_convex *b, double tolerance, pl
     return out;
 }
 
-bool pls_epa_less(const pls_convex *a, const pls_convex *b, double tolerance, pls_depth *known)
+/// How far inside the face the origin's foot on its plane lies, from the nearest side; negative: outside.
+static double inside_by(const hull *h, const face *f)
 {
-    const double cap = a->smooth || b->smooth ? 1e-2 : 1e-3; // [rad]
-    const double sagitta = 0.1 * cap * cap;
+    const int corners = h->a->dimension;
+    const pls_vec3 foot = pls_scale(f->n, f->d);
+    double least = DBL_MAX;
+    for (int k = 0; k < corners; ++k)
+    {
+        const pls_vec3 p = h->point[f->at[k]].w, along = pls_unit(pls_sub(h->point[f->at[(k + 1) % corners]].w, p));
+        least = fmin(least, pls_dot(corners == 2 ? along : pls_cross(f->n, along), pls_sub(foot, p)));
+    }
+    return least;
+}
+
+/// Error of a face's normal, by round-off of its corners [rad].
+static double blur(const hull *h, const face *f)
+{
+    const pls_vec3 p = h->point[f->at[0]].w, q = h->point[f->at[1]].w, r = h->point[f->at[2]].w;
+    const pls_vec3 u = pls_sub(q, p), v = pls_sub(r, p), w = pls_sub(r, q);
+    const double longest = sqrt(fmax(fmax(pls_dot(u, u), pls_dot(v, v)), pls_dot(w, w)));
+    const double height = h->a->dimension == 2 ? longest : pls_length(pls_cross(u, v)) / longest;
+    return rounding * h->scale / height;
+}
+
+// The polytope bounds F from below. Where that bound, as a function of the direction, is locally least, it is by a face that the origin's foot lies in: all other faces lead to one of these.
+// So the directions in which F may be less than at `known` lie about such faces, and about the known minimum itself. The one over that is closed as soon as the bound is no less all around, `cap` from
+// its normal: within 2 cap of a local minimum F is at least delta cos(2 cap), as M holds its point delta n.
+bool pls_epa_less(const pls_convex *a, const pls_convex *b, double tolerance, const pls_exact_depth *exact, pls_depth *known)
+{
+    const double cap = 5e-4; // [rad]
+    const double enough = known->delta - tolerance;
     hull h;
     start(&h, a, b);
     pls_simplex none = {.count = 0};
-    known->converged = false;
+    known->converged = known->local = false;
     if (!first_points(&h, &none)) return false;
     first_faces(&h);
     int chosen;
     while ((chosen = nearest_face(&h)) >= 0)
     {
         const face f = h.faces[chosen];
-        if (f.d >= known->delta - tolerance) break; // and all others
+        if (f.d >= enough) break; // and all others
+        const double error = blur(&h, &f), inside = inside_by(&h, &f);
+        h.faces[chosen].closed = true;
+        if (f.d > 0.0 && inside < -(error + DBL_EPSILON) * h.scale) continue;
         ++known->iterations;
-        pls_support_pair p = ask(&h, f.n);
-        double F = pls_dot(p.w, f.n), off = pls_length(pls_sub(f.n, known->normal));
-        if (F < known->delta - tolerance && off > cap)
+        const pls_support_pair p = ask(&h, f.n);
+        pls_depth there = {.delta = pls_dot(p.w, f.n), .normal = f.n};
+        const double open = there.delta - f.d;
+        const bool known_one = pls_length(pls_sub(f.n, known->normal)) <= cap;
+        if (known_one && (open <= fmax(tolerance, error * h.scale) || f.d * cos(cap) + inside * sin(cap) >= enough)) continue;
+        if (!known_one && there.delta >= enough && open <= error * h.scale) // too thin for a point to be put in
         {
-            known->delta = F, known->normal = f.n;
+            if (!exact || !exact->near(exact->self, f.n, &there)) known->local = true;
+            if (there.delta >= enough) continue;
+        }
+        if (!known_one && there.delta < enough)
+        {
+            known->delta = there.delta, known->normal = there.normal;
             known->support_calls += h.support_calls;
             return true;
         }
-        if (off <= cap && F - f.d <= sagitta * h.scale)
-            h.faces[chosen].closed = true; // over the known one
-        else if (!put_in(&h, p, chosen))
-            break;
+        if (!put_in(&h, p, chosen)) break;
     }
     // When there is no more room: how much less it might be.
     double left = chosen < 0 ? 0.0 : known->delta - h.faces[chosen].d;

@@ -22,7 +22,9 @@ static const double enough = 1e-13;      ///< of the size, on what is left of th
 static const double rounding = 1e-14;    ///< of the size: by which other vertices may be higher
 static const double longest = 0.3;       ///< step [rad]
 static const double nearly_along = 1e-4; ///< sine of the angle of edges that leave no normal to speak of
+static const double least_turn = 1e-8;   ///< of the normal, at which a search begins that has no other measure [rad]
 static const double sloping = 1e-9;      ///< slope of the distance along an edge that leaves its least value to round-off
+static const double steepest = 1e-11;    ///< as `enough`, where round-off of the normal leaves more
 enum { MOST = 8, MOST_CHANGES = 6, MOST_CHORDS = 60 };
 
 enum kind { UNKNOWN, ROUND, CORNER, EDGE, FACE };
@@ -321,6 +323,64 @@ static bool find_normal(side *a, side *b, const limits *l, pls_vec3 *n, double *
     return false;
 }
 
+/// What is left of the gradient with one direction open, the normal turned by `angle` about the limit from n0.
+static double slope_at(side *a, side *b, pls_vec3 along, pls_vec3 n0, double angle, pls_vec3 *n, pls_vec3 *apart)
+{
+    const pls_vec3 e = pls_cross(along, n0);
+    *n = pls_unit(pls_add(pls_scale(n0, cos(angle)), pls_scale(e, sin(angle))));
+    look(a, *n), look(b, *n);
+    *apart = pls_sub(a->on, b->on);
+    return pls_dot(*apart, pls_cross(along, *n));
+}
+
+/// Move the point on a cylinder's rim along it by what the other side's is off across the edge, `off` along e from this one.
+static void move_on_rim(side *s, pls_vec3 e, double off)
+{
+    if (!s->cylinder || s->kind != CORNER) return;
+    const pls_vec3 own = pls_posed_own(s->p, s->point);
+    const pls_vec3 tangent = pls_posed_turn(s->p, pls_unit(pls_vec(-own.y, own.x, 0.0)));
+    const double across = pls_dot(tangent, e);
+    if (fabs(across) > 0.1) s->on = pls_add(s->on, pls_scale(tangent, off / across));
+}
+
+/// Where Newton's steps go wild: along an edge that all but lies in a cylinder's end the point on the rim runs by its radius within that small angle. Where the slope changes sign is the place.
+static bool find_turn(side *a, side *b, const limits *l, pls_vec3 *n, double *F, pls_vec3 *gap, int *iterations)
+{
+    const double size = fmin(a->p->size, b->p->size);
+    const pls_vec3 along = l->along[0], n0 = *n;
+    pls_vec3 apart;
+    double low = 0.0, high = 0.0, slope_low = slope_at(a, b, along, n0, 0.0, n, &apart), slope_high = slope_low, slope = slope_low;
+    for (double reach = least_turn; slope_low > 0.0 && reach < longest; reach *= 4.0)
+        high = low, slope_high = slope_low, low = -reach, slope_low = slope_at(a, b, along, n0, low, n, &apart), ++*iterations;
+    for (double reach = least_turn; slope_high < 0.0 && reach < longest; reach *= 4.0)
+        low = high, slope_low = slope_high, high = reach, slope_high = slope_at(a, b, along, n0, high, n, &apart), ++*iterations;
+    if (!(slope_low <= 0.0 && slope_high >= 0.0)) return false;
+    for (int k = 0, last = 0; k < MOST_CHORDS && fabs(slope) >= enough * size && high - low > 1e-16; ++k)
+    {
+        const double angle = (low * slope_high - high * slope_low) / (slope_high - slope_low);
+        slope = slope_at(a, b, along, n0, angle, n, &apart), ++*iterations;
+        if (slope < 0.0)
+        {
+            low = angle, slope_low = slope;
+            if (last < 0) slope_high *= 0.5;
+            last = -1;
+        }
+        else
+        {
+            high = angle, slope_high = slope;
+            if (last > 0) slope_low *= 0.5;
+            last = 1;
+        }
+    }
+    *F = pls_dot(apart, *n);
+    if (a->cylinder)
+        move_on_rim(a, pls_cross(along, *n), -slope);
+    else
+        move_on_rim(b, pls_cross(along, *n), slope);
+    *gap = pls_sub(pls_sub(a->on, b->on), pls_scale(*n, *F));
+    return fabs(slope) < steepest * size;
+}
+
 /// The normal before the first iteration, as the limits leave it. False: they leave none.
 static bool start_normal(const limits *l, pls_vec3 *n)
 {
@@ -367,12 +427,17 @@ static enum answer at_face(side *face, side *other, pls_vec3 *n, double *F)
 {
     *n = face_normal(face);
     if (other->kind == FACE) return NONE;
+    look(face, *n), look(other, *n);
     if (other->kind == EDGE) // not quite along the face
     {
-        to_end(other, other->sign * pls_dot(other->edge, *n) > 0.0);
+        const bool high = other->sign * pls_dot(other->edge, *n) > 0.0;
+        const pls_vec3 end = pls_add(other->point, pls_scale(other->edge, high ? other->high : other->low));
+        if (face->cylinder && over_face(face, end) != FOUND)
+            to_corner(face, face->v[0]); // the edge goes over the rim
+        else
+            to_end(other, high);
         return CHANGED;
     }
-    look(face, *n), look(other, *n);
     *F = face->sign * pls_dot(pls_sub(face->on, other->on), *n);
     face->on = pls_add(other->on, pls_scale(*n, face->sign * *F));
     return over_face(face, face->on);
@@ -448,10 +513,14 @@ static enum answer solve(side *a, side *b, pls_vec3 *n, pls_depth *out)
     pls_vec3 gap;
     int iterations = 0;
     if (!start_normal(&l, n)) return NONE;
+    const pls_vec3 first = *n;
     if (!find_normal(a, b, &l, n, &out->delta, &gap, &iterations))
-        return is_sharp(a) && b->kind == ROUND   ? by_distance(b, a, n, out)
-               : is_sharp(b) && a->kind == ROUND ? by_distance(a, b, n, out)
-                                                 : NONE;
+    {
+        if (is_sharp(a) && b->kind == ROUND) return by_distance(b, a, n, out);
+        if (is_sharp(b) && a->kind == ROUND) return by_distance(a, b, n, out);
+        *n = first;
+        if (l.count != 1 || !find_turn(a, b, &l, n, &out->delta, &gap, &iterations)) return NONE;
+    }
     out->iterations += iterations;
     return l.count == 0 ? FOUND : slide(&l, gap);
 }

@@ -176,7 +176,8 @@ pls_gap pls_gjk(const pls_convex *a, const pls_convex *b, pls_vec3 shift, pls_si
         pls_support_pair p = pls_support_of(a, b, shift, pls_scale(v, -1.0 / distance));
         ++gap.support_calls;
         // M lies beyond the plane through p.w: no point of it is nearer than that.
-        if (distance - pls_dot(v, p.w) / distance <= tolerance || is_known(s, p.w, scale))
+        gap.open = distance - pls_dot(v, p.w) / distance;
+        if (gap.open <= tolerance || is_known(s, p.w, scale))
         {
             gap.converged = true;
             return gap;

@@ -47,7 +47,7 @@ static bool gap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s, pls
 {
     pls_gap gap = pls_gjk(a, b, pls_vec(0.0, 0.0, 0.0), s);
     count_in(d, &gap);
-    if (gap.overlap) return false;
+    if (gap.overlap || gap.open >= gap.distance) return false;
     d->delta = -gap.distance;
     d->normal = pls_scale(gap.v, -1.0 / gap.distance);
     d->converged = gap.converged;
@@ -155,7 +155,7 @@ static void overlap_of(const pls_convex *a, const pls_convex *b, pls_simplex *s,
         d->local = false;
         if (d->delta <= 0.0 || is_least(a, b, s, d)) return;
         pls_simplex kept = *s;
-        if (!pls_epa_less(a, b, open_of(a, b, d->delta), d))
+        if (!pls_epa_less(a, b, open_of(a, b, d->delta), NULL, d))
         {
             *s = kept;
             return;

@@ -90,8 +90,7 @@ static pls_convex convex_of(const pls_posed *p)
                         .size = 2.0 * p->size,
                         .margin = alone ? 0.0 : p->shape->margin * p->scale,
                         .polytope = p->shape->polytope != NULL,
-                        .dimension = p->shape->dimension,
-                        .smooth = p->shape->ops->smooth};
+                        .dimension = p->shape->dimension};
 }
 
 static pls_vec3 unit_or_x(pls_vec3 d)
@@ -251,17 +250,33 @@ static pls_depth incremental(const query *q)
 
 static bool is_least(const query *q, const pls_depth *d);
 
+/// Of the cores.
+static bool near_by_features(const void *self, pls_vec3 n, pls_depth *d)
+{
+    const query *q = self;
+    double memory[PLS_FEATURE_MEMORY] = {0.0};
+    if (!pls_feature_depth(q->a, q->b, n, PLS_FEATURES_NOW, memory, d)) return false;
+    d->delta -= q->a->shape->margin * q->a->scale + q->b->shape->margin * q->b->scale;
+    return true;
+}
+
 /// Minima that differ by less than GJK's last digits, or that the expanding polytope gave no certain answer about: is another one less?
 static void ask_again(const query *q, pls_depth *d)
 {
+    enum { MOST_MINIMA = 12 };
     const pls_convex a = convex_of(q->a), b = convex_of(q->b);
-    const double margins = a.margin + b.margin;
-    double memory[PLS_FEATURE_MEMORY] = {0.0};
-    pls_depth other = *d, finer;
-    other.delta -= margins;
-    const bool less = pls_epa_less(&a, &b, rounding * (a.size + b.size) + proof * other.delta, &other);
-    d->converged = less || other.converged;
-    if (less && pls_feature_depth(q->a, q->b, other.normal, PLS_FEATURES_LAST_STEP, memory, &finer) && finer.delta < d->delta) *d = finer;
+    const pls_exact_depth exact = {near_by_features, q};
+    for (int k = 0; k < MOST_MINIMA; ++k)
+    {
+        double memory[PLS_FEATURE_MEMORY] = {0.0};
+        pls_depth other = *d, finer;
+        other.delta -= a.margin + b.margin;
+        const bool less = pls_epa_less(&a, &b, rounding * (a.size + b.size) + proof * other.delta, &exact, &other);
+        d->converged = !less && other.converged;
+        if (!less || !pls_feature_depth(q->a, q->b, other.normal, PLS_FEATURES_NOW, memory, &finer) || !(finer.delta < d->delta)) return;
+        finer.iterations += d->iterations;
+        *d = finer;
+    }
 }
 
 /// Where something round is as good as flat its support point runs away under a normal that turns by round-off; distances outside are certain. Not for two polytopes, which nothing is gained for.
@@ -285,7 +300,7 @@ static void polish(const query *q, pls_depth *d)
     if (!apart && !(fabs(finer.delta - d->delta) < near * size)) return;
     finer.iterations += d->iterations;
     finer.converged = apart || d->converged;
-    if (!apart && (!d->converged || finer.delta - d->delta > proof * d->delta + rounding * size)) ask_again(q, &finer);
+    if (!apart && (!d->converged || d->local || finer.delta - d->delta > proof * d->delta + rounding * size)) ask_again(q, &finer);
     *d = finer;
 }
 

@@ -75,7 +75,7 @@ static void pose(body *s, pls_vec3 centre, pls_quat q)
 
 static pls_convex set_of(const body *s)
 {
-    pls_convex c = {support, NULL, s, s->centre, {{0, 0, 0}}, s->size, s->margin, s->vertices > 0, s->dimension, s->vertices == 0};
+    pls_convex c = {support, NULL, s, s->centre, {{0, 0, 0}}, s->size, s->margin, s->vertices > 0, s->dimension};
     c.axis[0] = pls_rotate(s->q, pls_vec(1, 0, 0)), c.axis[1] = pls_rotate(s->q, pls_vec(0, 1, 0)),
     c.axis[2] = pls_rotate(s->q, pls_vec(0, 0, 1));
     return c;

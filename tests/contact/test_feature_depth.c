@@ -101,6 +101,34 @@ static void rim_on_face(void **state)
     pls_shape_free(can), pls_shape_free(box);
 }
 
+/// An edge (a capsule) all but along the end of a cylinder goes over its rim. From the point of the rim and the edge's direction: the normal is at right angles to the edge and to the rim.
+static void edge_along_an_end(void **state)
+{
+    (void)state;
+    pls_shape *can = make(&pls_cylinder_shape, 3, NUMBERS(0.5, 0.6, 0.0)), *pill = make(&pls_capsule_shape, 3, NUMBERS(0.1, 3.0));
+    const double tilts[3] = {1e-3, 2e-5, 2e-7}, at = 0.7, direction = 0.2;
+    for (int k = 0; k < 6; ++k)
+    {
+        const double tilt = tilts[k / 2], delta = k % 2 ? -2e-6 : 2e-6;
+        const pls_vec3 rim = pls_vec(0.5 * cos(at), 0.5 * sin(at), 0.3), tangent = pls_vec(-sin(at), cos(at), 0.0);
+        const pls_vec3 edge =
+            pls_vec(cos(tilt) * cos(direction), cos(tilt) * sin(direction), -sin(tilt)); // down towards -z outwards of the rim
+        const pls_vec3 n = pls_unit(pls_cross(edge, tangent)), axis = pls_vec(1.0, 0.0, 0.0);
+        const pls_vec3 turning = pls_cross(axis, edge);
+        const pls_quat q = turn_about(turning, atan2(pls_length(turning), pls_dot(axis, edge)));
+        const pls_posed a = pls_pose(can, pls_vec(0.0, 0.0, 0.0), pls_quat_identity(), 1.0),
+                        b = pls_pose(pill, pls_add(rim, pls_scale(n, 0.1 - delta)), q, 1.0);
+        double memory[PLS_FEATURE_MEMORY] = {0.0};
+        pls_depth d;
+        assert_true(pls_feature_depth(&a, &b, pls_unit(pls_add(n, pls_vec(1e-7, -1e-7, 0.0))), PLS_FEATURES_NOW, memory, &d));
+        assert_true(fabs(d.delta - delta) < 1e-13);
+        assert_true(gap_between(d.normal, n) < 1e-9);
+        assert_true(gap_between(d.on_a, rim) < 1e-9);
+        assert_true(gap_between(pls_sub(d.on_a, d.on_b), pls_scale(d.normal, d.delta)) < 1e-14);
+    }
+    pls_shape_free(can), pls_shape_free(pill);
+}
+
 /// In the plane: a disc as an ellipse at a side and at a corner of a rectangle.
 static void in_the_plane(void **state)
 {
@@ -169,6 +197,7 @@ int main(void)
         cmocka_unit_test(ball_at_face_edge_and_corner),
         cmocka_unit_test(sides_of_cylinders),
         cmocka_unit_test(rim_on_face),
+        cmocka_unit_test(edge_along_an_end),
         cmocka_unit_test(in_the_plane),
         cmocka_unit_test(what_is_no_point_is_refused),
         cmocka_unit_test(features_change_along_a_path),

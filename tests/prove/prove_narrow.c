@@ -1,6 +1,6 @@
 // prove_narrow.c -- the narrow phase against slow oracles in full: a table per dimension, a row per pair of shapes.
 //
-//     prove_narrow [pairs [trajectories [steps [every [searched [dimension]]]]]]        100000 200 400 5 11, both dimensions
+//     prove_narrow [pairs [trajectories [steps [every [searched [dimension [seed]]]]]]]        100000 200 400 5 11 0 1; dimension 0: both
 //
 // Exit status 1 when a depth is wrong, an answer is not finite or a solver failed.
 
@@ -31,10 +31,10 @@ typedef struct result
     narrow_tally warm, both;
 } result;
 
-static void measure(int dimension, const int numbers[NUMBERS], result *r)
+static void measure(int dimension, const int numbers[NUMBERS], uint64_t seed, result *r)
 {
-    narrow_random(dimension, r->a, r->b, numbers[0], numbers[4], 1, &r->both);
-    narrow_tumble(dimension, r->a, r->b, numbers[1], numbers[2], numbers[3], numbers[4], 2, &r->warm);
+    narrow_random(dimension, r->a, r->b, numbers[0], numbers[4], seed, &r->both);
+    narrow_tumble(dimension, r->a, r->b, numbers[1], numbers[2], numbers[3], numbers[4], seed + 1, &r->warm);
     add(&r->both, &r->warm);
 }
 
@@ -50,7 +50,7 @@ static uint64_t print(int dimension, const result *r)
     return wrong + t->counts.failures;
 }
 
-static uint64_t table(int dimension, const int numbers[NUMBERS])
+static uint64_t table(int dimension, const int numbers[NUMBERS], uint64_t seed)
 {
     static result results[NARROW_MOST_SHAPES * (NARROW_MOST_SHAPES + 1) / 2];
     int count = 0;
@@ -59,7 +59,7 @@ static uint64_t table(int dimension, const int numbers[NUMBERS])
         for (int a = 0; a <= b; ++a)
             if (narrow_shape(dimension, b + 1) || a != b) results[count++] = (result){.a = a, .b = b}; // but plane on plane
 #pragma omp parallel for schedule(dynamic)
-    for (int k = count - 1; k >= 0; --k) measure(dimension, numbers, &results[k]); // the slow ones first
+    for (int k = count - 1; k >= 0; --k) measure(dimension, numbers, seed, &results[k]); // the slow ones first
     printf("\n%dD\n\n| pair | compared | searched | depth | of depth | normal | points | wrong | failures | iterations | restarts | "
            "fallbacks | ns |\n",
            dimension);
@@ -73,9 +73,10 @@ int main(int argc, char **argv)
     int numbers[NUMBERS] = {100000, 200, 400, 5, 11};
     for (int k = 1; k < argc && k <= NUMBERS; ++k) numbers[k - 1] = atoi(argv[k]);
     const int only = argc > NUMBERS + 1 ? atoi(argv[NUMBERS + 1]) : 0;
+    const uint64_t seed = argc > NUMBERS + 2 ? strtoull(argv[NUMBERS + 2], NULL, 10) : 1;
     uint64_t bad = 0;
     for (int dimension = 3; dimension >= 2; --dimension)
-        if (only == 0 || only == dimension) bad += table(dimension, numbers);
+        if (only == 0 || only == dimension) bad += table(dimension, numbers, seed);
     narrow_free_shapes();
     return bad ? 1 : 0;
 }

@@ -345,11 +345,11 @@ static double bound_of(const cone *c, pls_vec3 known, int corners)
 static void halve(const body *a, const body *b, const cone *c, int corners, cone half[2])
 {
     int longest = 0;
-    double most = INFINITY;
+    double most = 0.0;
     for (int k = 0; k < corners; ++k)
     {
-        const double cosine = pls_dot(c->corner[k].n, c->corner[(k + 1) % corners].n);
-        if (cosine < most) most = cosine, longest = k;
+        const pls_vec3 side = pls_sub(c->corner[k].n, c->corner[(k + 1) % corners].n); // cosines of less than 1e-8 rad would all be 1
+        if (pls_dot(side, side) > most) most = pls_dot(side, side), longest = k;
     }
     const int other = (longest + 1) % corners;
     const sample middle = sample_of(a, b, pls_add(c->corner[longest].n, c->corner[other].n));
@@ -550,6 +550,20 @@ static void face(const body *a, body *b, pls_vec3 n, double target)
     else
         by = pls_sub(pls_sub(support(a, n), pls_scale(n, target)), support(b, pls_scale(n, -1.0)));
     set_pose(b, moved(b->pose, by));
+}
+
+void narrow_once(int dimension, int ka, int kb, const pls_posed pose[2], narrow_tally *tally)
+{
+    static _Thread_local body a, b;
+    pls_posed at[2] = {pose[0], pose[1]};
+    a = make_body(dimension, ka), b = make_body(dimension, kb);
+    at[0].shape = a.shape, at[0].size = a.shape->radius * at[0].scale;
+    at[1].shape = b.shape, at[1].size = b.shape->radius * at[1].scale;
+    set_pose(&a, at[0]), set_pose(&b, at[1]);
+    pls_pair_state state = {{0}};
+    pls_touch t;
+    query(&a, &b, &state, &t, &tally->counts);
+    compare(&a, &b, &t, narrow_allowed(dimension, ka, kb), true, tally);
 }
 
 void narrow_random(int dimension, int ka, int kb, int pairs, int searched, uint64_t seed, narrow_tally *tally)

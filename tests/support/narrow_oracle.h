@@ -37,6 +37,8 @@ void narrow_free_shapes(void);
 /// Error of depths allowed for a pair, as part of the depth: 1e-8 for polytopes, 1e-6 for others.
 double narrow_allowed(int dimension, int a, int b);
 
+/// One pair at poses whose shape and size are set here; nothing known beforehand, searched.
+void narrow_once(int dimension, int a, int b, const pls_posed pose[2], narrow_tally *tally);
 /// Random poses, half of them overlapping, by 1e-6 to 5 % of the size; nothing known beforehand. `searched`: of how many one is searched also where a ball proves it.
 void narrow_random(int dimension, int a, int b, int pairs, int searched, uint64_t seed, narrow_tally *tally);
 /// Tumbling trajectories through gaps and overlaps up to 5 %, warm; one step of `every` is compared.
