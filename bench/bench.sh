@@ -153,15 +153,23 @@ for ((round = 1; round <= rounds; ++round)); do
 done
 
 # Each pair of shapes once; distances that are searched for in values alone take a thousand times longer, so fewer of them.
-shapes=(sphere box capsule cylinder ellipsoid superquadric polyhedron32 polyhedron128 sdf plane)
-for ((round = 1; round <= rounds; ++round)); do
-    for ((a = 0; a < 9; ++a)); do
-        for ((b = a; b < 10; ++b)); do
+solids='sphere box capsule cylinder ellipsoid superquadric rounded-box rounded-polyhedron prism polyhedron32 polyhedron128 sdf plane'
+flats='disc rectangle rounded-rectangle stadium ellipse superellipse polygon half-plane'
+queries() # <round> <shape...>, the last one a plane
+{
+    local round=$1 a b pairs
+    shift
+    for ((a = 1; a < $#; ++a)); do
+        for ((b = a; b <= $#; ++b)); do
             pairs=$query_pairs
-            case ${shapes[a]}-${shapes[b]} in *sdf*) pairs=$(((query_pairs + 99) / 100)) ;; esac
-            ours contact-query "$round" particls "$contact_query" "${shapes[a]}" "${shapes[b]}" "$pairs" "$query_steps"
+            case ${!a}-${!b} in *sdf*) pairs=$(((query_pairs + 99) / 100)) ;; esac
+            ours contact-query "$round" particls "$contact_query" "${!a}" "${!b}" "$pairs" "$query_steps"
         done
     done
+}
+for ((round = 1; round <= rounds; ++round)); do
+    queries "$round" $solids
+    queries "$round" $flats
 done
 
 # Polyhedra that settle: our step and Yade's on the same grains, law and places; ours by penetration depth, and with many more of them.

@@ -11,6 +11,7 @@
 #include "base/alloc.h"
 #include "base/random.h"
 #include "contact/narrow_phase.h"
+#include "contact/overlap_record.h"
 #include "shape/builtin.h"
 
 #include <stdio.h>
@@ -48,19 +49,31 @@ typedef struct entry
     const pls_shape_ops *ops;
     double values[8];
     int points; ///< of a hull
+    int dimension;
 } entry;
 
 static const entry entries[] = {
-    {"sphere", &pls_sphere_shape, {0.5}, 0},
-    {"box", &pls_box_shape, {0.5, 0.4, 0.3, 0.0}, 0},
-    {"capsule", &pls_capsule_shape, {0.25, 0.5}, 0},
-    {"cylinder", &pls_cylinder_shape, {0.4, 0.8, 0.0}, 0},
-    {"ellipsoid", &pls_ellipsoid_shape, {0.5, 0.4, 0.3}, 0},
-    {"superquadric", &pls_superquadric_shape, {0.5, 0.4, 0.3, 0.7, 0.6}, 0},
-    {"polyhedron32", &pls_polyhedron_shape, {0.0}, 32},
-    {"polyhedron128", &pls_polyhedron_shape, {0.0}, 128},
-    {"sdf", &sdf_alone, {0.0}, 0},
-    {"plane", &pls_plane_shape, {0.0}, 0},
+    {"sphere", &pls_sphere_shape, {0.5}, 0, 3},
+    {"box", &pls_box_shape, {0.5, 0.4, 0.3, 0.0}, 0, 3},
+    {"capsule", &pls_capsule_shape, {0.25, 0.5}, 0, 3},
+    {"cylinder", &pls_cylinder_shape, {0.4, 0.8, 0.0}, 0, 3},
+    {"ellipsoid", &pls_ellipsoid_shape, {0.5, 0.4, 0.3}, 0, 3},
+    {"superquadric", &pls_superquadric_shape, {0.5, 0.4, 0.3, 0.7, 0.6}, 0, 3},
+    {"rounded-box", &pls_box_shape, {0.5, 0.4, 0.3, 0.1}, 0, 3},
+    {"rounded-polyhedron", &pls_polyhedron_shape, {0.1}, 32, 3},
+    {"prism", &pls_prism_shape, {0.0, 0.6}, 6, 3},
+    {"polyhedron32", &pls_polyhedron_shape, {0.0}, 32, 3},
+    {"polyhedron128", &pls_polyhedron_shape, {0.0}, 128, 3},
+    {"sdf", &sdf_alone, {0.0}, 0, 3},
+    {"plane", &pls_plane_shape, {0.0}, 0, 3},
+    {"disc", &pls_disc_shape, {0.5}, 0, 2},
+    {"rectangle", &pls_box_shape, {0.5, 0.35, 1.0, 0.0}, 0, 2},
+    {"rounded-rectangle", &pls_box_shape, {0.5, 0.35, 1.0, 0.1}, 0, 2},
+    {"stadium", &pls_capsule_shape, {0.25, 0.5}, 0, 2},
+    {"ellipse", &pls_ellipse_shape, {0.5, 0.35}, 0, 2},
+    {"superellipse", &pls_superquadric_shape, {0.5, 0.4, 1.0, 1.0, 0.6}, 0, 2},
+    {"polygon", &pls_polygon_shape, {0.0}, 8, 2},
+    {"half-plane", &pls_half_plane_shape, {0.0}, 0, 2},
 };
 
 static void stop(const char *message)
@@ -76,20 +89,27 @@ static pls_shape *make_shape(const char *name)
         const entry *e = &entries[k];
         if (strcmp(e->name, name) != 0) continue;
         pls_vec3 point[128];
-        for (int p = 0; p < e->points; ++p) // on an ellipsoid, by the golden angle, so that all are corners
+        const bool flat = e->dimension == 2 || e->ops == &pls_prism_shape;
+        for (int p = 0; p < e->points; ++p) // on an ellipse, or on an ellipsoid by the golden angle, so that all are corners
         {
+            if (flat)
+            {
+                const double angle = 2.0 * M_PI * p / e->points;
+                point[p] = pls_vec(0.5 * cos(angle), 0.4 * sin(angle), 0.0);
+                continue;
+            }
             double z = 1.0 - (2.0 * p + 1.0) / e->points, r = sqrt(1.0 - z * z), angle = 2.399963229728653 * p;
             point[p] = pls_vec(0.5 * r * cos(angle), 0.4 * r * sin(angle), 0.35 * z);
         }
         pls_shape_input input = {
             .values = e->values, .value_count = sizeof e->values / sizeof *e->values, .points = point, .point_count = (size_t)e->points};
         pls_shape *shape = NULL;
-        if (pls_shape_make(e->ops, 3, &input, name, &shape) != PLS_OK) stop(pls_last_message());
+        if (pls_shape_make(e->ops, e->dimension, &input, name, &shape) != PLS_OK) stop(pls_last_message());
         return shape;
     }
     fprintf(stderr, "usage: contact_query SHAPE SHAPE [PAIRS [STEPS]]   (shapes:");
     for (size_t k = 0; k < sizeof entries / sizeof *entries; ++k) fprintf(stderr, " %s", entries[k].name);
-    fprintf(stderr, "; a plane comes last)\n");
+    fprintf(stderr, "; a plane comes last, in 2D a half-plane; both of one dimension)\n");
     exit(2);
 }
 
@@ -106,10 +126,17 @@ typedef struct job
 
 static const pls_narrow_options options = {.solver = PLS_SOLVER_DEPTH, .faces = PLS_FACES_POINT};
 
-static pls_vec3 random_unit(pls_random *random)
+static pls_vec3 random_unit(pls_random *random, int dimension)
 {
     double x = pls_random_normal(random), y = pls_random_normal(random), z = pls_random_normal(random);
-    return pls_unit(pls_vec(x, y, z));
+    return pls_unit(pls_vec(x, y, dimension == 2 ? 0.0 : z));
+}
+
+/// In 2D only about z.
+static pls_vec3 random_axis(pls_random *random, int dimension)
+{
+    const pls_vec3 axis = random_unit(random, 3);
+    return dimension == 2 ? pls_vec(0.0, 0.0, axis.z < 0.0 ? -1.0 : 1.0) : axis;
 }
 
 static pls_quat turn_by(pls_quat q, pls_vec3 axis, double angle)
@@ -133,9 +160,11 @@ static void tumble(job *j, size_t pair, pls_narrow_counts *counts)
     pls_random random = pls_random_stream(7, pair, PLS_FOR_USER);
     const bool wall = j->b->ops->unbounded;
     const double size = 2.0 * size_of(j), phase = 2.0 * M_PI * pls_random_uniform(&random);
-    pls_vec3 e = random_unit(&random), spin_a = random_unit(&random), spin_b = random_unit(&random), slide = random_unit(&random);
-    pls_quat qa = turn_by(pls_quat_identity(), random_unit(&random), 2.0 * M_PI * pls_random_uniform(&random));
-    pls_quat qb = turn_by(pls_quat_identity(), random_unit(&random), 2.0 * M_PI * pls_random_uniform(&random));
+    const int d = j->a->dimension;
+    pls_vec3 e = random_unit(&random, d), spin_a = random_axis(&random, d), spin_b = random_axis(&random, d),
+             slide = random_unit(&random, d);
+    pls_quat qa = turn_by(pls_quat_identity(), random_axis(&random, d), 2.0 * M_PI * pls_random_uniform(&random));
+    pls_quat qb = turn_by(pls_quat_identity(), random_axis(&random, d), 2.0 * M_PI * pls_random_uniform(&random));
     pls_vec3 xa = pls_vec(0.0, 0.0, 0.0), xb = pls_scale(e, wall ? -j->a->radius : 0.99 * (j->a->radius + j->b->radius));
     pls_pair_state state = {{0}};
     pls_touch touch = {.delta = 0.0};
@@ -218,6 +247,35 @@ static result time_warm(const job *j, pls_narrow_counts *counts)
     if (!isfinite(sum)) stop("a depth is not a number");
     pls_release(&state);
     return r;
+}
+
+/// The default law, as a step asks: contacts that go on by their record, where that tells.
+static double time_manifold(const job *j)
+{
+    const pls_narrow_options manifold = {.solver = PLS_SOLVER_DEPTH, .faces = PLS_FACES_MANIFOLD};
+    pls_pair_state *state = NULL;
+    pls_overlap_record *record = NULL;
+    pls_narrow_counts counts = {0};
+    if (pls_allocate(&state, j->pairs, sizeof *state, "states") != PLS_OK ||
+        pls_allocate(&record, j->pairs, sizeof *record, "records") != PLS_OK)
+        stop(pls_last_message());
+    double begin = 0.0, sum = 0.0;
+    for (size_t step = 0; step < j->steps; ++step)
+    {
+        if (step == 1) begin = now();
+        for (size_t p = 0; p < j->pairs; ++p)
+        {
+            const pls_posed *a = &j->pose_a[step * j->pairs + p], *b = &j->pose_b[step * j->pairs + p];
+            pls_touch touch;
+            if (step == 0 || !pls_narrow_phase_again(a, b, &manifold, &record[p], &touch, &counts))
+                pls_narrow_phase_from(a, b, &manifold, &state[p], &record[p], &touch, &counts);
+            sum += touch.delta;
+        }
+    }
+    const double ns = 1e9 * (now() - begin) / (double)(j->pairs * (j->steps - 1));
+    if (!isfinite(sum)) stop("an overlap is not a number");
+    pls_release(&state), pls_release(&record);
+    return ns;
 }
 
 static result time_cold(const job *j)
@@ -322,7 +380,8 @@ static void measure_nodes(const job *j)
 {
     static const size_t counts[3] = {100, 500, MOST_NODES};
     static pls_vec3 node[MOST_NODES];
-    if (j->a->ops != j->b->ops || strcmp(j->b->ops->name, "superquadric") == 0) return; // the others, and 15 us per value, tell nothing new
+    if (j->a->ops != j->b->ops || j->a->dimension == 2 || strcmp(j->b->ops->name, "superquadric") == 0)
+        return; // the others, and 15 us per value, tell nothing new
     for (int c = 0; c < 3; ++c)
     {
         char name[32];
@@ -350,7 +409,7 @@ int main(int argc, char **argv)
 {
     if (argc < 3 || argc > 5) make_shape(""); // tells the usage
     pls_shape *a = make_shape(argv[1]), *b = make_shape(argv[2]);
-    if (a->ops->unbounded) make_shape("");
+    if (a->ops->unbounded || a->dimension != b->dimension) make_shape("");
     job j = {.a = a, .b = b, .pairs = number(argc, argv, 3, 500, 1), .steps = number(argc, argv, 4, 100, 2)};
     const size_t all = j.pairs * j.steps;
     if (pls_allocate(&j.pose_a, all, sizeof *j.pose_a, "poses") != PLS_OK ||
@@ -360,14 +419,16 @@ int main(int argc, char **argv)
     pls_narrow_counts making = {0}, counts = {0};
     for (size_t p = 0; p < j.pairs; ++p) tumble(&j, p, &making);
     result warm = time_warm(&j, &counts), cold = time_cold(&j);
+    const double manifold = time_manifold(&j);
     printf("{\"a\": \"%s\", \"b\": \"%s\", \"pairs\": %zu, \"steps\": %zu, \"touching\": %.3f, \"iterations\": %.3f, \"restarts\": %llu, "
            "\"fallbacks\": %llu, "
-           "\"failures\": %llu, \"warm_ns\": %.1f",
+           "\"failures\": %llu, \"warm_ns\": %.1f, \"manifold_ns\": %.1f",
            argv[1], argv[2], j.pairs, j.steps, (double)warm.touching / (double)all, (double)counts.iterations / (double)counts.queries,
-           (unsigned long long)counts.restarts, (unsigned long long)counts.fallbacks, (unsigned long long)counts.failures, warm.ns);
+           (unsigned long long)counts.restarts, (unsigned long long)counts.fallbacks, (unsigned long long)counts.failures, warm.ns,
+           manifold);
     print_result("cold", &cold);
 #ifdef PLS_BENCH_CCD
-    if (!b->ops->unbounded)
+    if (!b->ops->unbounded && a->dimension == 3)
     {
         result epa = time_ccd(&j, ccdGJKPenetration), mpr = time_ccd(&j, ccdMPRPenetration);
         print_result("gjk_epa", &epa);

@@ -230,7 +230,7 @@ void case_cloud(verify_sheet *sheet)
     pls_world_figures start = verify_figures(scene.world), now;
     double energy = verify_total_energy(scene.world), momentum_error = 0.0, angular_error = 0.0, energy_error = 0.0;
     size_t most = 0;
-    int looks = sheet->thorough ? 100 : 20, steps = sheet->thorough ? 40000 : 10000;
+    int looks = sheet->thorough ? 100 : 20, steps = sheet->thorough ? 100000 : 10000;
     for (int k = 0; k < looks; ++k)
     {
         MUST(pls_world_run(scene.world, (uint64_t)(steps / looks)));
