@@ -25,6 +25,7 @@
 
 #include "contact/facet.h"
 #include "contact/overlap_laws.h"
+#include "contact/touch_area.h"
 #include "shape/builtin.h"
 #include "shape/surface_sample.h"
 
@@ -56,6 +57,7 @@ bool pls_is_sampled_pair(const pls_shape *a, const pls_shape *b)
 typedef struct sums
 {
     pls_overlap_integrals P;
+    pls_vec3 by_area;        ///< integral of x over the area
     double deepest, nearest; ///< of all pieces; a bound of the distance
 } sums;
 
@@ -178,9 +180,8 @@ static void add_piece(sums *s, const touching_piece *f, double sign)
     P->first = pls_add(P->first, pls_scale(x, share));
     const double second[6] = {x.x * x.x, x.y * x.y, x.z * x.z, x.x * x.y, x.x * x.z, x.y * x.z};
     for (int k = 0; k < 6; ++k) P->second[k] += share * second[k];
-    const pls_vec3 face = pls_scale(f->n, sign * f->area);
-    P->area = pls_add(P->area, face);
-    P->area_moment = pls_add(P->area_moment, pls_cross(x, face));
+    P->area = pls_add(P->area, pls_scale(f->n, sign * f->area));
+    s->by_area = pls_add(s->by_area, pls_scale(x, f->area));
     s->deepest = fmax(s->deepest, f->d);
 }
 
@@ -238,14 +239,17 @@ void pls_sampled_touch(const pls_posed *a, const pls_posed *b, const pls_narrow_
         const holder h = hold(a, origin);
         add_pieces(&s, b, &h, origin, both ? 0.5 : 1.0, -1.0);
     }
+    const bool flat = a->shape->dimension == 2;
     const double blur = PLS_OVERLAP_BLUR * a->size;
     const pls_depth none = {.delta = -fmin(s.nearest, a->size), .normal = pls_vec(0.0, 0.0, 1.0), .on_a = origin, .on_b = origin};
-    if (s.deepest > 0.0 && pls_overlap_touch(&s.P, options, blur, a->shape->dimension == 2, out))
+    if (s.deepest > 0.0 && pls_overlap_touch(&s.P, options, blur, flat, out))
     {
-        out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
-        // One piece is a point; what its moments differ by from none are rounding errors.
+        // One piece is a point; what its moments differ by from none are rounding errors. More of them face many ways, so that their middle is that of their places.
         const double all = out->spread[0] + out->spread[1] + out->spread[2];
-        if (!(all > point_like * a->size * a->size)) memset(out->spread, 0, sizeof out->spread), out->lever = 0.0;
+        const bool point = !(all > point_like * a->size * a->size);
+        if (point) memset(out->spread, 0, sizeof out->spread), out->lever = 0.0;
+        out->middle = point || flat ? out->point : pls_in_plane_of_touch(out, pls_scale(s.by_area, 1.0 / s.P.surface));
+        out->point = pls_add(origin, out->point), out->middle = pls_add(origin, out->middle);
     }
     else
         pls_overlap_none(&none, out);
