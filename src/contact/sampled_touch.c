@@ -40,15 +40,15 @@ static bool is_concave(const pls_shape *s) { return !s->convex && s->sample; }
 static bool is_ball(const pls_shape *s) { return s->polytope && s->polytope->vertex_count == 1; }
 static bool is_flat_by_values(const pls_shape *s) { return s->convex && !s->ops->support && s->sample && s->sample->flat > flat_places; }
 
-static bool has_flat_places(const pls_shape *s)
-{
-    return s->ops->unbounded || s->polytope || s->ops == &pls_cylinder_shape || is_flat_by_values(s);
-}
+static bool is_cylinder(const pls_shape *s) { return s->ops == &pls_cylinder_shape; }
+
+static bool has_flat_places(const pls_shape *s) { return s->ops->unbounded || s->polytope || is_cylinder(s) || is_flat_by_values(s); }
 
 bool pls_is_sampled_pair(const pls_shape *a, const pls_shape *b)
 {
     if (is_ball(a) || is_ball(b)) return false;
     if (is_concave(a) || is_concave(b)) return true;
+    if (is_cylinder(a) && is_cylinder(b)) return true; // ends on ends, sides on sides: no closed forms, but a quick SDF
     return (is_flat_by_values(a) || is_flat_by_values(b)) && has_flat_places(a) && has_flat_places(b);
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/alloc.h"
 #include "base/random.h"
+#include "shape/builtin.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -16,6 +17,7 @@
 
 enum {
     PIECES = 12000,
+    PIECES_OF_CYLINDER = 3000, ///< as cans come by the thousand
     PIECES_2D = 1500,
     FIRST_SIDE = 24, ///< cells along the longest edge of the bounds when nothing is known
     MOST_SIDE = 160,
@@ -385,11 +387,16 @@ pls_status pls_surface_sample_make(const pls_shape *shape, size_t count, pls_sur
     return status;
 }
 
+static size_t count_for(const pls_shape *shape)
+{
+    return shape->dimension == 2 ? PIECES_2D : shape->ops == &pls_cylinder_shape ? PIECES_OF_CYLINDER : PIECES;
+}
+
 pls_status pls_shape_need_sample(const pls_shape *shape)
 {
     if (shape->sample || shape->ops->unbounded || shape->part_count > 0 || !(shape->mass.volume > 0.0)) return PLS_OK;
     pls_surface_sample *made;
-    PLS_TRY(pls_surface_sample_make(shape, shape->dimension == 2 ? PIECES_2D : PIECES, &made));
+    PLS_TRY(pls_surface_sample_make(shape, count_for(shape), &made));
     memcpy((char *)(uintptr_t)shape + offsetof(pls_shape, sample), &made, sizeof made); // kept with the shape, though it does not change it
     return PLS_OK;
 }

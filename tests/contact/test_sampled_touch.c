@@ -244,18 +244,21 @@ static int by_size(const void *a, const void *b)
 static void collisions_of_sharp_edges_keep_their_energy(void **state)
 {
     (void)state;
-    enum { COLLISIONS = 9 };
+    enum { PAIRS = 4, COLLISIONS = 9 };
     solids_seed(74);
     pls_shape *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *brick = solids_box(3, 0.4, 0.35, 0.5, 0.0),
-              *drum = MAKE(&values_drum, 3, 0.4, 0.5);
-    const pls_shape *partner[] = {box, brick, drum};
-    for (int k = 0; k < 3; ++k) assert_int_equal(pls_shape_need_sample(partner[k]), PLS_OK);
-    double change[3 * COLLISIONS];
-    for (int k = 0; k < 3 * COLLISIONS; ++k) change[k] = change_of_energy(box, partner[k % 3]);
-    qsort(change, 3 * COLLISIONS, sizeof *change, by_size);
-    print_message("change of energy: median %.2g, worst %.2g\n", change[3 * COLLISIONS / 2], change[3 * COLLISIONS - 1]);
-    assert_true(change[3 * COLLISIONS / 2] < 1e-5 && change[3 * COLLISIONS - 1] < 2e-3);
-    pls_shape_free(box), pls_shape_free(brick), pls_shape_free(drum);
+              *drum = MAKE(&values_drum, 3, 0.4, 0.5), *can = MAKE(&pls_cylinder_shape, 3, 0.4, 0.6, 0.0);
+    const pls_shape *pair[PAIRS][2] = {{box, box}, {box, brick}, {box, drum}, {can, can}};
+    for (int p = 0; p < PAIRS; ++p)
+    {
+        double change[COLLISIONS];
+        for (int side = 0; side < 2; ++side) assert_int_equal(pls_shape_need_sample(pair[p][side]), PLS_OK);
+        for (int k = 0; k < COLLISIONS; ++k) change[k] = change_of_energy(pair[p][0], pair[p][1]);
+        qsort(change, COLLISIONS, sizeof *change, by_size);
+        print_message("change of energy: median %.2g, worst %.2g\n", change[COLLISIONS / 2], change[COLLISIONS - 1]);
+        assert_true(change[COLLISIONS / 2] < 1e-5 && change[COLLISIONS - 1] < 2e-3);
+    }
+    pls_shape_free(box), pls_shape_free(brick), pls_shape_free(drum), pls_shape_free(can);
 }
 
 static void pairs_are_what_their_shapes_make_them(void **state)
@@ -263,14 +266,16 @@ static void pairs_are_what_their_shapes_make_them(void **state)
     (void)state;
     pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1), *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *round = MAKE(&values_ball, 3, 0.4),
               *ball = MAKE(&pls_sphere_shape, 3, 0.4), *plain = solids_box(3, 0.2, 0.2, 0.2, 0.0), *floor = solids_plane(3),
-              *egg = MAKE(&pls_ellipsoid_shape, 3, 0.3, 0.2, 0.1, 0.0);
+              *egg = MAKE(&pls_ellipsoid_shape, 3, 0.3, 0.2, 0.1, 0.0), *can = MAKE(&pls_cylinder_shape, 3, 0.3, 0.4, 0.0);
+    assert_true(pls_is_sampled_pair(can, can) && pls_is_sampled_pair(can, ring));
+    assert_false(pls_is_sampled_pair(can, plain) || pls_is_sampled_pair(can, floor) || pls_is_sampled_pair(can, egg));
     assert_true(pls_is_sampled_pair(ring, ring) && pls_is_sampled_pair(ring, floor) && pls_is_sampled_pair(plain, ring));
     assert_false(pls_is_sampled_pair(ring, ball)); // one call of the SDF
     assert_true(pls_is_sampled_pair(box, floor) && pls_is_sampled_pair(box, plain) && pls_is_sampled_pair(plain, box));
     assert_false(pls_is_sampled_pair(box, egg) || pls_is_sampled_pair(round, floor) || pls_is_sampled_pair(round, box));
     assert_false(pls_is_sampled_pair(plain, plain) || pls_is_sampled_pair(plain, floor) || pls_is_sampled_pair(egg, egg));
     pls_shape_free(ring), pls_shape_free(box), pls_shape_free(round), pls_shape_free(ball), pls_shape_free(plain), pls_shape_free(floor),
-        pls_shape_free(egg);
+        pls_shape_free(egg), pls_shape_free(can);
 }
 
 int main(void)
