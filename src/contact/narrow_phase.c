@@ -568,7 +568,8 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     const query q = {a, b, state->value, counts}, cold = {a, b, none.value, counts};
     pls_depth d;
     ++counts->queries;
-    if (options->faces != PLS_FACES_POINT && pls_is_sampled_pair(a->shape, b->shape))
+    const bool in_pieces = a->shape->sample || b->shape->sample; // as they are in worlds
+    if (options->faces != PLS_FACES_POINT && in_pieces && pls_is_sampled_pair(a->shape, b->shape))
     {
         pls_sampled_touch(a, b, options, out);
         out->stands = true;
