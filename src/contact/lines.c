@@ -383,6 +383,7 @@ static pls_overlap_integrals integrals_of(const sums *sum)
     pls_overlap_integrals P = {.volume = W[1],
                                .surface = W[0],
                                .first = sum->first,
+                               .scattered = true,
                                .line = true,
                                .area_moment = sum->even,
                                .by_depth = {W[2] / 2.0, sum->by_t.force, sum->by_t.torque},

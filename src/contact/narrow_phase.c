@@ -11,7 +11,7 @@
 //   smooth on smooth     Newton on the sphere of normals (smooth_depth.c); when it stalls, BFGS; then the expanding polytope
 //   SDFs alone           BFGS on one point between the surfaces; its last digits, and what it cannot do, on the shapes pushed apart (sdf_depth.c); then the expanding polytope
 //                        on support points that follow from the SDF. Warm on the shapes pushed apart at once
-//   not convex           pieces of the surfaces (sampled_touch.c), and so are flat places that only an SDF knows of. For PLS_FACES_POINT BFGS from the deepest of a grid of points
+//   not convex           pieces of the surfaces (sampled_touch.c), and so are flat places that only an SDF knows of, and two cylinders. For PLS_FACES_POINT BFGS from the deepest of a grid of points
 //                        in the overlap of the bounding boxes: a place where the two surfaces face each other, so `delta` is right for that place; that no other place is
 //                        deeper is only as certain as the grid is fine
 //
@@ -602,7 +602,8 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
         one_facet(a, b, options, &(pls_touch){.delta = a->size, .normal = pls_vec(0.0, 0.0, 1.0), .point = centre_of(a)}, out);
         return false;
     }
-    if (options->faces != PLS_FACES_POINT && pls_is_sampled_pair(a->shape, b->shape))
+    const bool in_pieces = a->shape->sample || b->shape->sample; // as they are in worlds
+    if (options->faces != PLS_FACES_POINT && in_pieces && pls_is_sampled_pair(a->shape, b->shape))
     {
         pls_sampled_touch(a, b, options, out);
         out->stands = true;

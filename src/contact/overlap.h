@@ -56,7 +56,8 @@ struct pls_overlap_integrals
     double second[6];                 ///< of x (x) x: xx, yy, zz, xy, xz, yz [m^5]
     pls_vec3 area;                    ///< integral of the outward normal over A's surface in B [m^2]
     pls_vec3 area_moment;             ///< of x cross normal [m^3]
-    bool line;                        ///< over a line: `surface` is its length, `area_moment` the integral of x; powers of m are one less
+    bool scattered;                   ///< `area_moment` is the integral of x over the area in its place: of pieces, and of lines
+    bool line;                        ///< over a line, whose length `surface` is; powers of m are one less
     pls_push by_depth, by_its_square; ///< of d and of d^2: the mean of both bodies, or d of the wall alone
 };
 

@@ -29,7 +29,7 @@ static void take_spread(const pls_overlap_integrals *P, bool flat, double spread
 static pls_vec3 middle_of_area(const pls_overlap_integrals *P, const pls_touch *t)
 {
     const pls_vec3 area = P->area;
-    if (P->line) return pls_in_plane_of_touch(t, pls_scale(P->area_moment, 1.0 / P->surface));
+    if (P->scattered) return pls_in_plane_of_touch(t, pls_scale(P->area_moment, 1.0 / P->surface));
     const double square = pls_dot(area, area);
     if (!(square > 0.0)) return t->point;
     return pls_in_plane_of_touch(t, pls_scale(pls_cross(area, P->area_moment), 1.0 / square));

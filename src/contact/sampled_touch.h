@@ -1,11 +1,11 @@
-// sampled_touch.h -- contact of surfaces that are known by their pieces alone: shapes that are not convex, and flat places of shapes given by an SDF.
+// sampled_touch.h -- contact of surfaces that are known by their pieces alone: shapes that are not convex, flat places of shapes given by an SDF, cylinders on each other.
 #ifndef PLS_CONTACT_SAMPLED_TOUCH_H
 #define PLS_CONTACT_SAMPLED_TOUCH_H
 
 #include "contact/narrow_phase.h"
 #include "contact/overlap.h"
 
-/// Pairs whose contact is that of pieces, always the same pairs of shapes: of which one is not convex, or has flat places that only its SDF knows of while the other has some, too.
+/// Pairs whose contact is that of pieces, always the same pairs of shapes: of which one is not convex, or has flat places that only its SDF knows of while the other has some, too; two cylinders.
 /// Not balls, whose distance from anything is one SDF call.
 bool pls_is_sampled_pair(const pls_shape *a, const pls_shape *b);
 

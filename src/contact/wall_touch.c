@@ -46,7 +46,7 @@ static void move_origin(pls_overlap_integrals *P, pls_vec3 by)
                               V * s.x * s.z - s.x * m.z - s.z * m.x, V * s.y * s.z - s.y * m.z - s.z * m.y};
     for (int k = 0; k < 6; ++k) P->second[k] += change[k];
     P->first = pls_sub(m, pls_scale(s, V));
-    P->area_moment = pls_sub(P->area_moment, P->line ? pls_scale(s, P->surface) : pls_cross(s, P->area));
+    P->area_moment = pls_sub(P->area_moment, P->scattered ? pls_scale(s, P->surface) : pls_cross(s, P->area));
     move_push(&P->by_depth, s), move_push(&P->by_its_square, s);
 }
 
@@ -57,7 +57,8 @@ static void add_push(pls_push *to, const pls_push *p)
 
 static void add(pls_overlap_integrals *to, const pls_overlap_integrals *P)
 {
-    to->volume += P->volume, to->surface += P->surface, to->line = P->line;
+    to->volume += P->volume, to->surface += P->surface;
+    to->line = P->line, to->scattered = P->scattered;
     for (int k = 0; k < 6; ++k) to->second[k] += P->second[k];
     to->first = pls_add(to->first, P->first);
     to->area = pls_add(to->area, P->area), to->area_moment = pls_add(to->area_moment, P->area_moment);
@@ -88,6 +89,7 @@ bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *se
         case NONE: break;
     }
     if (!any) return false;
+    sum->kind = kind;
     if (sum->facets == 0)
         sum->origin = origin;
     else
@@ -110,25 +112,21 @@ bool pls_wall_touch(pls_wall_sum *sum, const pls_narrow_options *options, pls_to
     const bool flat = a->shape->dimension == 2;
     out->delta = 0.0;
     if (sum->facets == 0) return false;
-    const bool line = pls_has_line(a->shape);
     pls_touch t = {.delta = 0.0};
-    if (line ? !pls_line_law(&sum->P, a->size, flat, &t) : !pls_overlap_touch(&sum->P, options, PLS_OVERLAP_BLUR * sum->size, flat, &t))
+    if (sum->kind == LINE ? !pls_line_law(&sum->P, a->size, flat, &t)
+                          : !pls_overlap_touch(&sum->P, options, PLS_OVERLAP_BLUR * sum->size, flat, &t))
         return false;
-    if (pls_is_thick_cylinder(a))
+    double deeper = 0.0;       // along the normal, to where points of other contacts are
+    if (sum->kind == CYLINDER) // at half the depth
     {
         pls_cylinder_area(a->z, &t);
-        // As deep as points of other contacts are: half of the depth.
-        const double below = sum->front.offset - pls_dot(sum->front.normal, t.point);
-        const pls_vec3 deeper = pls_scale(t.normal, 0.5 * sum->depth - below);
-        t.point = pls_add(t.point, deeper), t.middle = pls_add(t.middle, deeper);
+        deeper = 0.5 * sum->depth - (sum->front.offset - pls_dot(sum->front.normal, t.point));
     }
-    else if (a->shape->sample)
+    else if (sum->kind == FACES) // on the surface, not on that of the core
+        deeper = a->shape->margin * a->scale;
+    else if (sum->kind == PIECES)
         pls_sampled_area(a->size, &t);
-    else if (!line)
-    {
-        const pls_vec3 to_surface = pls_scale(t.normal, a->shape->margin * a->scale);
-        t.point = pls_add(t.point, to_surface), t.middle = pls_add(t.middle, to_surface);
-    }
+    t.point = pls_add(t.point, pls_scale(t.normal, deeper)), t.middle = pls_add(t.middle, pls_scale(t.normal, deeper));
     t.point = pls_add(t.point, sum->origin), t.middle = pls_add(t.middle, sum->origin);
     t.depth = t.reach = sum->depth;
     t.stands = true;

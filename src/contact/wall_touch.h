@@ -21,6 +21,7 @@ typedef struct pls_wall_sum
     double size;          ///< of the largest body so far [m]
     pls_half_space front; ///< of the facet that has it, about the origin
     int facets;           ///< that something is behind
+    int kind;             ///< of the pair (wall_touch.c)
 } pls_wall_sum;
 
 pls_wall_sum pls_wall_sum_of(const pls_posed *a);

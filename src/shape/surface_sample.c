@@ -2,11 +2,14 @@
 //
 // In a tetrahedron the SDF is taken to be linear, so that the surface there is a triangle or a quadrangle; those of a cell make up one piece, at a random place of it, whose area is off by the
 // square of the spacing (at edges of the body, which are cut across, by the spacing), and which is brought down to the surface itself. Values are kept for two layers of the lattice at a time.
+//
+// Inner balls are as large as lets their surface, looked at in some directions, stay inside. Depths inside would tell the same where they are true, but those of a union of parts are not.
 
 #include "shape/surface_sample.h"
 
 #include "base/alloc.h"
 #include "base/random.h"
+#include "shape/builtin.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -14,6 +17,7 @@
 
 enum {
     PIECES = 12000,
+    PIECES_OF_CYLINDER = 3000, ///< as cans come by the thousand
     PIECES_2D = 1500,
     FIRST_SIDE = 24, ///< cells along the longest edge of the bounds when nothing is known
     MOST_SIDE = 160,
@@ -22,6 +26,10 @@ enum {
 };
 static const double off_grid = 0.3819660112501051; ///< of a cell: bounds are places where surfaces like to lie
 static const double little_bend = 0.1;             ///< curvature by that of a ball of the shape's size
+static const double largest_inner = 0.2;           ///< radius of inner balls, of the shape's size
+static const double inner_part =
+    0.5; ///< of the ball that just fits: so it touches nothing but its piece, and no direction is missed by as much
+static const double sticks_out = 1e-3; ///< of its radius: what a ball that fits may do, as surfaces and their normals are not exact
 
 // ---- cells ----------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -241,7 +249,11 @@ static void add_balls(pls_surface_sample *s, uint32_t first, uint32_t last)
         high = pls_vec(fmax(high.x, x.x), fmax(high.y, x.y), fmax(high.z, x.z));
     }
     *ball = (pls_surface_ball){.centre = pls_scale(pls_add(low, high), 0.5), .first = first, .last = last, .leaf = last - first <= LEAF};
-    for (uint32_t k = first; k < last; ++k) ball->radius = fmax(ball->radius, pls_length(pls_sub(s->piece[k].x, ball->centre)));
+    for (uint32_t k = first; k < last; ++k)
+    {
+        const pls_surface_piece *p = &s->piece[k];
+        ball->radius = fmax(ball->radius, pls_length(pls_sub(p->inner, ball->centre)) + p->inner_radius);
+    }
     if (!ball->leaf)
     {
         const pls_vec3 edge = pls_sub(high, low);
@@ -298,6 +310,55 @@ static double flat_share(const pls_surface_sample *s, const pls_shape *shape)
     return flat / all;
 }
 
+// ---- inner balls ----------------------------------------------------------------------------------------------------------------------------------------
+
+/// Does the ball that touches the surface at x, n its normal there, lie in the shape? It does if its centre is as deep; if not, and depths are true, it sticks out where the surface is nearest.
+static bool fits(const pls_shape *shape, pls_vec3 x, pls_vec3 n, double radius)
+{
+    const pls_vec3 centre = pls_sub(x, pls_scale(n, radius));
+    const double out = sticks_out * radius;
+    if (-pls_shape_sdf(shape, centre) >= radius - out) return true;
+    const pls_vec3 g = pls_shape_gradient(shape, centre);
+    if (pls_length(g) > 0.5 && pls_shape_sdf(shape, pls_add(centre, pls_scale(pls_unit(g), radius))) > out) return false;
+    const bool flat = shape->dimension == 2;
+    for (int k = 0; k < 27; ++k)
+    {
+        const pls_vec3 d = pls_vec(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+        if ((flat && d.z != 0.0) || pls_dot(d, d) == 0.0) continue;
+        if (pls_shape_sdf(shape, pls_add(centre, pls_scale(pls_unit(d), radius))) > out) return false;
+    }
+    return true;
+}
+
+/// By halving.
+static double largest_ball(const pls_shape *shape, pls_vec3 x, pls_vec3 n, double most)
+{
+    enum { HALVINGS = 12 };
+    double low = 0.0, high = most;
+    if (fits(shape, x, n, high)) return high;
+    for (int k = 0; k < HALVINGS; ++k)
+    {
+        const double middle = 0.5 * (low + high);
+        *(fits(shape, x, n, middle) ? &low : &high) = middle;
+    }
+    return low;
+}
+
+static void find_inner(const pls_shape *shape, pls_surface_sample *s)
+{
+    const double most = largest_inner / inner_part * shape->size, aside = sticks_out * shape->size;
+    for (size_t k = 0; k < s->count; ++k)
+    {
+        pls_surface_piece *p = &s->piece[k];
+        // The cell's normal is that of its triangles. On an edge there is none, nor a ball.
+        const pls_vec3 g = pls_shape_gradient(shape, pls_add(p->x, pls_scale(p->n, aside)));
+        const pls_vec3 n = pls_length(g) > 0.5 ? pls_unit(g) : p->n;
+        p->inner_radius = inner_part * largest_ball(shape, p->x, n, most);
+        p->inner = pls_sub(p->x, pls_scale(n, p->inner_radius));
+        s->largest_inner = fmax(s->largest_inner, p->inner_radius);
+    }
+}
+
 // ---- the whole ------------------------------------------------------------------------------------------------------------------------------------------
 
 static pls_status make(const pls_shape *shape, size_t count, pls_surface_sample *s)
@@ -307,6 +368,7 @@ static pls_status make(const pls_shape *shape, size_t count, pls_surface_sample 
     s->piece = found.entry, s->count = found.count;
     PLS_TRY(status);
     PLS_TRY(pls_allocate(&s->ball, 2 * s->count, sizeof *s->ball, "pieces of a surface"));
+    find_inner(shape, s);
     add_balls(s, 0, (uint32_t)s->count);
     s->flat = flat_share(s, shape);
     return PLS_OK;
@@ -325,11 +387,16 @@ pls_status pls_surface_sample_make(const pls_shape *shape, size_t count, pls_sur
     return status;
 }
 
+static size_t count_for(const pls_shape *shape)
+{
+    return shape->dimension == 2 ? PIECES_2D : shape->ops == &pls_cylinder_shape ? PIECES_OF_CYLINDER : PIECES;
+}
+
 pls_status pls_shape_need_sample(const pls_shape *shape)
 {
     if (shape->sample || shape->ops->unbounded || shape->part_count > 0 || !(shape->mass.volume > 0.0)) return PLS_OK;
     pls_surface_sample *made;
-    PLS_TRY(pls_surface_sample_make(shape, shape->dimension == 2 ? PIECES_2D : PIECES, &made));
+    PLS_TRY(pls_surface_sample_make(shape, count_for(shape), &made));
     memcpy((char *)(uintptr_t)shape + offsetof(pls_shape, sample), &made, sizeof made); // kept with the shape, though it does not change it
     return PLS_OK;
 }

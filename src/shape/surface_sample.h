@@ -1,4 +1,4 @@
-// surface_sample.h -- a surface as many small pieces: where they are, how they face, how large they are, and balls about them.
+// surface_sample.h -- a surface as many small pieces: where they are, how they face, how large they are, which ball lies under them; and balls about many of them.
 //
 // What contact integrates over where it knows nothing of a shape but its SDF. Pieces come from a lattice laid over the shape: one for each cell that the surface goes through.
 #ifndef PLS_SHAPE_SURFACE_SAMPLE_H
@@ -11,9 +11,12 @@ typedef struct pls_surface_piece
     pls_vec3 x;  ///< on the surface [m]
     pls_vec3 n;  ///< outward, unit
     double area; ///< [m^2]; 2D: length [m]
+    /// A ball within the body, half as large as the largest one that touches its surface here: near edges small, on them nothing.
+    pls_vec3 inner;
+    double inner_radius; ///< [m]
 } pls_surface_piece;
 
-/// Pieces first .. last lie in it. Balls stand in the order in which a walk meets them: a ball, then those within; `next` is the one behind all of these.
+/// Pieces first .. last and their inner balls lie in it. Balls stand in the order in which a walk meets them: a ball, then those within; `next` is the one behind all of these.
 typedef struct pls_surface_ball
 {
     pls_vec3 centre;
@@ -27,7 +30,8 @@ struct pls_surface_sample
     pls_surface_piece *piece;
     pls_surface_ball *ball;
     size_t count, balls;
-    double flat; ///< share of the area that bends less, in one direction at least, than a ball ten times as large as the shape
+    double largest_inner; ///< radius [m]
+    double flat;          ///< share of the area that bends less, in one direction at least, than a ball ten times as large as the shape
 };
 
 /// About `count` pieces of a bounded shape, the same each time. LIMIT_EXCEEDED: the shape is so thin that no lattice of a sensible size meets its surface as often.

@@ -6,6 +6,7 @@
 #include "shape/surface_sample.h"
 #include "support/numbers.h"
 #include "support/solids.h"
+#include "support/two_bodies.h"
 #include "support/values_alone.h"
 
 #include <particls/memory.h>
@@ -14,6 +15,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -120,21 +122,24 @@ static void forces_in_the_plane_are_gradients_of_the_energy(void **state)
     pls_shape_free(hook), pls_shape_free(plate), pls_shape_free(floor);
 }
 
-/// A box known by values on a half-space and on a box of plane faces, standing on a face: the depth, its area, its middle.
+/// A box known by values on a half-space and on a box of plane faces, standing on a face: the depth, its area, its middle. Balls of radius s under the plate's surface touch the box's edges
+/// from up to sqrt(2 s depth) beside it: of the depths of such a rim the mean is 2/3 of the depth, that of squares 8/15, of third powers 16/35. Half of the sums is the plate's.
 static void a_face_on_a_face_is_as_deep_as_it_is(void **state)
 {
     (void)state;
-    pls_shape *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *floor = solids_plane(3), *plate = solids_box(3, 2.0, 2.0, 0.5, 0.0);
+    pls_shape *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *floor = solids_plane(3), *plate = solids_box(3, 0.7, 0.7, 0.3, 0.0);
     for (int on = 0; on < 2; ++on)
         for (double depth = 1e-4; depth < 0.02; depth *= 10.0)
         {
             const pls_posed ground = on == 0 ? pls_pose(floor, pls_vec(0, 0, 0), pls_quat_identity(), 1.0)
-                                             : pls_pose(plate, pls_vec(0, 0, -0.5), pls_quat_identity(), 1.0);
+                                             : pls_pose(plate, pls_vec(0.05, 0.1, -0.3), pls_quat_identity(), 1.0);
             const pls_posed a = pls_pose(box, pls_vec(0.1, 0.2, 0.3 - depth), box->principal, 1.0);
             const pls_touch t = touch(&a, &ground, PLS_FACES_MANIFOLD), v = touch(&a, &ground, PLS_FACES_VOLUME);
             const double width = sqrt(3.76 / (double)box->sample->count);
-            // Sides dip by the depth, and count a little.
-            assert_true(fabs(t.delta / depth - 1.0) < 3.0 * depth + 1e-6);
+            const double rim = on == 0 ? 0.0 : 0.5 * 3.6 * sqrt(2.0 * plate->sample->largest_inner * depth) / 0.8;
+            const double by_rim = (1.0 + 16.0 / 35.0 * rim) / (1.0 + 8.0 / 15.0 * rim);
+            // Sides dip by the depth, and count a little; so do balls near edges, less than as large. Few pieces of the plate are in the rim.
+            assert_true(fabs(t.delta / depth - by_rim) < 3.0 * depth + 0.5 * (1.0 - by_rim) + 1e-6);
             assert_true(t.normal.z < -1.0 + 1e-4 && fabs(t.depth - depth) < 1e-9);
             assert_true(hypot(t.point.x - 0.1, t.point.y - 0.2) < width);
             // Along the rim of the face cells of the lattice are cut across.
@@ -161,6 +166,8 @@ static void a_few_pieces_make_a_small_area(void **state)
         pls_vec3 corner[4];
         pls_touch_corners(&t, corner);
         for (int c = 0; c < 4; ++c) assert_true(pls_length(corner[c]) < 0.1);
+        // At points friction, dashpots and the normal force meet; there is no couple to make up for it if they do not.
+        assert_true(pls_length(pls_sub(t.middle, t.point)) < (pls_touch_is_point(&t) ? 1e-15 : 0.1));
         points += pls_touch_is_point(&t), areas += !pls_touch_is_point(&t);
         assert_true(pls_touch_is_point(&t) ? t.lever == 0.0 : t.lever < 0.1);
     }
@@ -188,19 +195,87 @@ static void a_ring_lies_on_its_crest(void **state)
     pls_shape_free(ring), pls_shape_free(floor);
 }
 
+static two_bodies_contact find(const pls_posed *a, const pls_posed *b, void *user)
+{
+    (void)user;
+    const pls_touch t = solids_touch(a, b, PLS_FACES_MANIFOLD, 1.0);
+    return (two_bodies_contact){t.delta, t.energy_delta, t.twist, t.normal, t.point};
+}
+
+/// B comes at A on a random line, both turned and spinning at random, so hard that a central impact overlaps by 2 % of the size; 800 steps per contact.
+static double change_of_energy(const pls_shape *sa, const pls_shape *sb)
+{
+    const double size = fmin(sa->radius, sb->radius), hardest = 0.02;
+    const pls_vec3 line = solids_direction(3), origin = pls_vec(0.0, 0.0, 0.0), side = pls_cross(line, solids_direction(3));
+    two_bodies pair = {.find = find};
+    moving_body *a = &pair.body[0], *b = &pair.body[1];
+    *a = two_bodies_make(sa, origin, solids_turn(solids_direction(3), solids_uniform(0.0, 6.0)));
+    *b = two_bodies_make(sb, origin, solids_turn(solids_direction(3), solids_uniform(0.0, 6.0)));
+    pls_posed at_a = moving_body_pose(a), at_b;
+    pls_depth depth;
+    double low = 0.0, high = sa->radius + sb->radius + size;
+    for (int k = 0; k < 40; ++k)
+    {
+        const double middle = 0.5 * (low + high);
+        b->x = pls_add(pls_scale(side, 0.25 * size), pls_scale(line, middle));
+        at_b = moving_body_pose(b);
+        depth = solids_depth(&at_a, &at_b, NULL);
+        *(depth.delta > -0.005 * size ? &low : &high) = middle;
+    }
+    pair.stiffness = a->mass * b->mass / (a->mass + b->mass) / (hardest * hardest * size * size);
+    a->v = line;
+    for (int k = 0; k < 2; ++k)
+        moving_body_set_spin(&pair.body[k], pls_scale(solids_direction(3), solids_uniform(0.0, 0.5) / pair.body[k].shape->radius));
+    const double dt = M_PI / 800.0 * sqrt(two_bodies_effective_mass(&pair, depth.on_a, depth.normal) / pair.stiffness);
+    two_bodies_begin(&pair);
+    const double before = two_bodies_energy(&pair);
+    for (int k = 0, touched = 0; k < 20000 && !(touched && pair.contact.delta < -0.01 * size); ++k)
+        two_bodies_step(&pair, dt), touched |= pair.contact.delta > 0.0;
+    return fabs(two_bodies_energy(&pair) / before - 1.0);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Edges meet edges and corners faces, of which pieces know only by and by, and a depth below an edge has a gradient that jumps.
+static void collisions_of_sharp_edges_keep_their_energy(void **state)
+{
+    (void)state;
+    enum { PAIRS = 4, COLLISIONS = 9 };
+    solids_seed(74);
+    pls_shape *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *brick = solids_box(3, 0.4, 0.35, 0.5, 0.0),
+              *drum = MAKE(&values_drum, 3, 0.4, 0.5), *can = MAKE(&pls_cylinder_shape, 3, 0.4, 0.6, 0.0);
+    const pls_shape *pair[PAIRS][2] = {{box, box}, {box, brick}, {box, drum}, {can, can}};
+    for (int p = 0; p < PAIRS; ++p)
+    {
+        double change[COLLISIONS];
+        for (int side = 0; side < 2; ++side) assert_int_equal(pls_shape_need_sample(pair[p][side]), PLS_OK);
+        for (int k = 0; k < COLLISIONS; ++k) change[k] = change_of_energy(pair[p][0], pair[p][1]);
+        qsort(change, COLLISIONS, sizeof *change, by_size);
+        print_message("change of energy: median %.2g, worst %.2g\n", change[COLLISIONS / 2], change[COLLISIONS - 1]);
+        assert_true(change[COLLISIONS / 2] < 1e-5 && change[COLLISIONS - 1] < 2e-3);
+    }
+    pls_shape_free(box), pls_shape_free(brick), pls_shape_free(drum), pls_shape_free(can);
+}
+
 static void pairs_are_what_their_shapes_make_them(void **state)
 {
     (void)state;
     pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1), *box = MAKE(&values_box, 3, 0.5, 0.4, 0.3, 0.0), *round = MAKE(&values_ball, 3, 0.4),
               *ball = MAKE(&pls_sphere_shape, 3, 0.4), *plain = solids_box(3, 0.2, 0.2, 0.2, 0.0), *floor = solids_plane(3),
-              *egg = MAKE(&pls_ellipsoid_shape, 3, 0.3, 0.2, 0.1, 0.0);
+              *egg = MAKE(&pls_ellipsoid_shape, 3, 0.3, 0.2, 0.1, 0.0), *can = MAKE(&pls_cylinder_shape, 3, 0.3, 0.4, 0.0);
+    assert_true(pls_is_sampled_pair(can, can) && pls_is_sampled_pair(can, ring));
+    assert_false(pls_is_sampled_pair(can, plain) || pls_is_sampled_pair(can, floor) || pls_is_sampled_pair(can, egg));
     assert_true(pls_is_sampled_pair(ring, ring) && pls_is_sampled_pair(ring, floor) && pls_is_sampled_pair(plain, ring));
     assert_false(pls_is_sampled_pair(ring, ball)); // one call of the SDF
     assert_true(pls_is_sampled_pair(box, floor) && pls_is_sampled_pair(box, plain) && pls_is_sampled_pair(plain, box));
     assert_false(pls_is_sampled_pair(box, egg) || pls_is_sampled_pair(round, floor) || pls_is_sampled_pair(round, box));
     assert_false(pls_is_sampled_pair(plain, plain) || pls_is_sampled_pair(plain, floor) || pls_is_sampled_pair(egg, egg));
     pls_shape_free(ring), pls_shape_free(box), pls_shape_free(round), pls_shape_free(ball), pls_shape_free(plain), pls_shape_free(floor),
-        pls_shape_free(egg);
+        pls_shape_free(egg), pls_shape_free(can);
 }
 
 int main(void)
@@ -211,6 +286,7 @@ int main(void)
         cmocka_unit_test(a_face_on_a_face_is_as_deep_as_it_is),
         cmocka_unit_test(a_few_pieces_make_a_small_area),
         cmocka_unit_test(a_ring_lies_on_its_crest),
+        cmocka_unit_test(collisions_of_sharp_edges_keep_their_energy),
         cmocka_unit_test(pairs_are_what_their_shapes_make_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,10 +7,12 @@
 
 #include "contact/admm.h"
 #include "contact/narrow_phase.h"
+#include "contact/sampled_touch.h"
 #include "contact/solid_list.h"
 
 #include "base/random.h"
 #include "shape/builtin.h"
+#include "shape/surface_sample.h"
 #include "support/numbers.h"
 #include "support/values_alone.h"
 #include "support/two_bodies.h"
@@ -673,6 +675,11 @@ int main(int argc, char **argv)
     for (int p = 0; p < count; ++p)
         for (int k = 0; k < CHOSEN; ++k)
             if (is_chosen(pairs[p], k)) some[k] = &all[p];
+    for (int p = 0; p < count; ++p) // as the library does before a pair can touch
+    {
+        const pls_shape *a = shapes[pairs[p][0]], *b = shapes[pairs[p][1]];
+        if (pls_is_sampled_pair(a, b) && (pls_shape_need_sample(a) != PLS_OK || pls_shape_need_sample(b) != PLS_OK)) return 2;
+    }
 #pragma omp parallel for schedule(dynamic)
     for (int p = 0; p < count; ++p) measure(shapes, pairs[p], collisions, &all[p]);
 

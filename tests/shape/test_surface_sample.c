@@ -99,6 +99,35 @@ static void balls_hold_their_pieces_and_a_walk_meets_all(void **state)
     pls_shape_free(shape);
 }
 
+/// Half as large as fits: half the distance from an edge of 90 degrees, half the radius of what is round. A corner piece knows itself as the union of two rectangles, whose seam is no edge.
+static void inner_balls_are_half_as_large_as_fits(void **state)
+{
+    (void)state;
+    const double box[4] = {0.5, 0.4, 0.3, 0.0}, ring[2] = {0.3, 0.1}, hook[1] = {0.5};
+    const pls_shape_input input[3] = {
+        {.values = box, .value_count = 4}, {.values = ring, .value_count = 2}, {.values = hook, .value_count = 1}};
+    const pls_shape_ops *const ops[3] = {&values_box, &values_ring, &values_corner};
+    for (int e = 0; e < 3; ++e)
+    {
+        pls_shape *shape = NULL;
+        assert_int_equal(pls_shape_make(ops[e], e == 2 ? 2 : 3, &input[e], "x", &shape), PLS_OK);
+        const pls_surface_sample *s = shape->sample;
+        for (size_t k = 0; k < s->count; ++k)
+        {
+            const pls_surface_piece *p = &s->piece[k];
+            const pls_vec3 x = p->x;
+            const double gap[3] = {0.5 - fabs(x.x), 0.4 - fabs(x.y), 0.3 - fabs(x.z)};
+            const double least = fmin(gap[0], fmin(gap[1], gap[2])), most = fmax(gap[0], fmax(gap[1], gap[2]));
+            const double edge = gap[0] + gap[1] + gap[2] - least - most; // the other two are those to edges
+            assert_true(p->inner_radius <= s->largest_inner && fabs(pls_length(pls_sub(x, p->inner)) - p->inner_radius) < 1e-9);
+            if (e == 0 && edge > 0.01) assert_true(fabs(p->inner_radius / fmin(0.5 * edge, s->largest_inner) - 1.0) < 0.01);
+            if (e == 1) assert_true(fabs(p->inner_radius / 0.05 - 1.0) < 0.01);
+            if (e == 2 && x.x < -0.499 && fabs(x.y) < 0.25) assert_true(p->inner_radius > 0.2 * shape->size - 1e-9);
+        }
+        pls_shape_free(shape);
+    }
+}
+
 static void a_shape_that_no_lattice_meets_is_refused(void **state)
 {
     (void)state;
@@ -116,6 +145,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pieces_make_up_the_surface),
         cmocka_unit_test(balls_hold_their_pieces_and_a_walk_meets_all),
+        cmocka_unit_test(inner_balls_are_half_as_large_as_fits),
         cmocka_unit_test(a_shape_that_no_lattice_meets_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
