@@ -51,7 +51,7 @@ pls_facet_view pls_facet_seen_from(const pls_posed *facet, const pls_facet *seam
 
 // ---- joints -----------------------------------------------------------------------------------------------------------------------------------------------
 
-static const double one_place = 1e-9; ///< of the smaller facet: corners nearer than this are one
+static const double one_place = 1e-6; ///< of the smaller facet: corners nearer than this are one
 
 static pls_vec3 corner_at(const pls_posed *p, int k) { return pls_posed_world(p, p->shape->polytope->vertex[k % p->shape->dimension]); }
 
@@ -117,7 +117,7 @@ pls_prism pls_facet_prism(const pls_posed *facet, const pls_facet *f, pls_vec3 o
         const double bend = f->bend[k] * front;
         if (free) add_plane(&p, side[k], corner[k], raised);
         if (free) add_bevel(&p, n, side[k], corner[k], raised);
-        if (free || !(bend > bevelled)) continue;
+        if (free || f->leans[k] || !(bend > bevelled)) continue;
         // The other front: this one mirrored at the plane between the two.
         add_bevel(&p, n, pls_sub(n, pls_scale(side[k], 2.0 * pls_dot(n, side[k]))), corner[k], raised);
     }

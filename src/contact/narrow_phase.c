@@ -22,6 +22,7 @@
 
 #include "contact/admm.h"
 #include "contact/convex.h"
+#include "contact/cylinder_pair.h"
 #include "contact/cylinder_touch.h"
 #include "contact/faces.h"
 #include "contact/feature_depth.h"
@@ -603,7 +604,8 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
         return false;
     }
     const bool in_pieces = a->shape->sample || b->shape->sample; // as they are in worlds
-    if (options->faces != PLS_FACES_POINT && in_pieces && pls_is_sampled_pair(a->shape, b->shape))
+    const bool cylinders = in_pieces && pls_is_cylinder_pair(a->shape, b->shape);
+    if (options->faces != PLS_FACES_POINT && in_pieces && !cylinders && pls_is_sampled_pair(a->shape, b->shape))
     {
         pls_sampled_touch(a, b, options, out);
         out->stands = true;
@@ -614,6 +616,11 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     // Where the pair has neither faces nor lines to speak of the point stands.
     bool recorded = false;
     if (options->faces == PLS_FACES_POINT || d.delta <= 0.0) return false;
+    if (cylinders)
+    {
+        pls_cylinders_touch(a, b, &d, options, out);
+        return false;
+    }
     if (on_wall)
     {
         pls_touch depth = *out;

@@ -4,8 +4,7 @@
 
 #include "contact/touch_area.h"
 
-/// The wrench as a force on a line, at its point nearest to `middle`, and a couple.
-static void put_on_line(const pls_push *p, pls_vec3 middle, pls_vec3 *point, double *twist)
+void pls_put_on_line(const pls_push *p, pls_vec3 middle, pls_vec3 *point, double *twist)
 {
     const double square = pls_dot(p->force, p->force);
     const pls_vec3 torque = pls_sub(p->torque, pls_cross(middle, p->force));
@@ -52,7 +51,7 @@ static void volume_law(const pls_overlap_integrals *P, double A0, pls_touch *out
     out->delta = length / A0;
     out->weight = fabs(pls_dot(P->area, out->normal)) / A0;
     out->energy_delta = sqrt(2.0 * w->energy / A0);
-    put_on_line(w, pls_scale(P->first, 1.0 / P->volume), &out->point, &out->twist);
+    pls_put_on_line(w, pls_scale(P->first, 1.0 / P->volume), &out->point, &out->twist);
 }
 
 /// Energy kn delta^2 / 2, delta = 3 Q / 2 W.
@@ -70,7 +69,7 @@ static void manifold_law(const pls_overlap_integrals *P, pls_touch *out)
     const double squares = 2.0 * W->energy, area = P->line ? P->surface : fabs(pls_dot(P->area, out->normal));
     const double a = delta * V / squares, b = delta * delta * area / squares;
     out->weight = fmax(9.0 - 18.0 * a + 12.0 * a * a - 2.0 * b, 0.0);
-    put_on_line(&slope, pls_scale(P->first, 1.0 / V), &out->point, &out->twist);
+    pls_put_on_line(&slope, pls_scale(P->first, 1.0 / V), &out->point, &out->twist);
 }
 
 /// In 2D the overlap is a slab about the plane z = 0: what cancels between its two sides leaves rounding errors, which would push bodies out of the plane.

@@ -12,6 +12,9 @@
 /// than rounding errors, `blur`, is none [m]. False if nothing overlaps, or less than numbers tell.
 bool pls_overlap_touch(pls_overlap_integrals *P, const pls_narrow_options *options, double blur, bool flat, pls_touch *out);
 
+/// A wrench as a force on a line, at its point nearest to `middle`, and a couple about it: `twist` by the force.
+void pls_put_on_line(const pls_push *push, pls_vec3 middle, pls_vec3 *point, double *twist);
+
 /// For bodies whose penetration depth is known but of which nothing, or less than numbers tell, overlaps.
 void pls_overlap_none(const pls_depth *depth, pls_touch *out);
 

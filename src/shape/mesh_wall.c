@@ -241,6 +241,7 @@ static pls_status from_corners(pls_vec3 (*corner)[3], size_t count, int dimensio
         if (!is_nothing(corner[k], dimension)) memmove(corner[left++], corner[k], sizeof *corner);
     if (left == 0)
         return pls_fail(PLS_INVALID_ARGUMENT, "none of the %zu pieces of the wall has %s", count, dimension == 3 ? "an area" : "a length");
+    PLS_TRY(pls_wall_unique(corner, &left, dimension)); // meshes with two sides have each triangle twice
     pls_status status = pls_allocate(&facet, left, sizeof *facet, "pieces of a wall");
     if (status == PLS_OK) status = pls_wall_facets(corner, left, dimension, facet);
     if (status == PLS_OK) status = allocate(left, &w);

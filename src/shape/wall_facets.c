@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const double straight = 1e-6; ///< bend of what goes straight on [rad]
 
@@ -40,6 +41,29 @@ static uint32_t number_of(const seams *s, uint32_t f, int k)
 {
     const size_t d = (size_t)s->dimension;
     return s->number[d * f + (size_t)k % d];
+}
+
+static pls_status allocate(seams *s)
+{
+    if (s->count > UINT32_MAX / 4)
+        return pls_fail(PLS_INVALID_ARGUMENT, "a wall of %zu pieces is too large; %u fit", s->count, UINT32_MAX / 4);
+    const size_t all = (size_t)s->dimension * s->count;
+    PLS_TRY(pls_allocate(&s->place, all, sizeof *s->place, "corners of a wall"));
+    PLS_TRY(pls_allocate(&s->number, all, sizeof *s->number, "corners of a wall"));
+    PLS_TRY(pls_allocate(&s->side, all, sizeof *s->side, "seams of a wall"));
+    PLS_TRY(pls_allocate(&s->queue, s->count, sizeof *s->queue, "seams of a wall"));
+    return pls_allocate(&s->seen, s->count, sizeof *s->seen, "seams of a wall");
+}
+
+static void release(seams *s)
+{
+    pls_release(&s->place), pls_release(&s->number), pls_release(&s->side), pls_release(&s->queue), pls_release(&s->seen);
+}
+
+static void swap_numbers(uint32_t *a, uint32_t *b)
+{
+    const uint32_t kept = *a;
+    *a = *b, *b = kept;
 }
 
 // ---- geometry of a piece ----------------------------------------------------------------------------------------------------------------------------------
@@ -108,6 +132,16 @@ static int by_corners(const void *a, const void *b)
     const side *p = a, *q = b;
     if (p->low != q->low) return p->low < q->low ? -1 : 1;
     if (p->high != q->high) return p->high < q->high ? -1 : 1;
+    return (p->piece > q->piece) - (p->piece < q->piece);
+}
+
+/// Of pieces: `place` is the highest corner.
+static int by_all_corners(const void *a, const void *b)
+{
+    const side *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    if (p->high != q->high) return p->high < q->high ? -1 : 1;
+    if (p->place != q->place) return p->place < q->place ? -1 : 1;
     return (p->piece > q->piece) - (p->piece < q->piece);
 }
 
@@ -267,7 +301,9 @@ static void tell_of_sides(seams *s, uint32_t f)
     {
         const uint32_t beyond = facet->neighbour[k];
         const int j = side_beyond(s, f, k);
+        int back;
         facet->bend[k] = 0.0, facet->level[k] = false;
+        facet->leans[k] = j >= 0 && !hangs_together(s, f, k, &back);
         facet->side[k] = pls_scale(inwards(s, f, k), -1.0), facet->side_normal[k] = facet->normal;
         if (j >= 0) pls_facet_join(facet, k, beyond, inwards(s, beyond, j), s->facet[beyond].patch == facet->patch);
     }
@@ -282,7 +318,7 @@ static void bends_at(const seams *s, uint32_t corner, double *least, double *mos
     for (int j = 0; j < 2; ++j)
     {
         *least = fmin(*least, facet->bend[sides[j]]), *most = fmax(*most, facet->bend[sides[j]]);
-        *free = *free || facet->neighbour[sides[j]] == PLS_NO_FACET;
+        *free = *free || facet->neighbour[sides[j]] == PLS_NO_FACET || facet->leans[sides[j]];
     }
 }
 
@@ -290,23 +326,22 @@ static void bends_at(const seams *s, uint32_t corner, double *least, double *mos
 static void tell_of_corner(seams *s, size_t first, size_t last)
 {
     const uint32_t d = (uint32_t)s->dimension;
-    double least = 0.0, most = 0.0;
+    double least = 0.0, most = 0.0, level = 1.0;
     bool free = false;
-    for (size_t c = first; c < last; ++c) bends_at(s, s->place[c].corner, &least, &most, &free);
+    pls_vec3 sum = {0.0, 0.0, 0.0};
+    for (size_t c = first; c < last; ++c)
+    {
+        const uint32_t at = s->place[c].corner;
+        bends_at(s, at, &least, &most, &free);
+        sum = pls_add(sum, pls_scale(s->facet[at / d].normal, angle_at(s, at / d, (int)(at % d))));
+    }
     const int form = free ? 0 : least > -straight ? 1 : most < straight ? -1 : 0;
+    const pls_vec3 mean = unit_or(sum, s->facet[s->place[first].corner / d].normal);
+    for (size_t c = first; c < last; ++c) level = fmin(level, pls_dot(mean, s->facet[s->place[c].corner / d].normal));
     for (size_t c = first; c < last; ++c)
     {
         const uint32_t at = s->place[c].corner;
         pls_facet *own = &s->facet[at / d];
-        pls_vec3 sum = {0.0, 0.0, 0.0};
-        for (size_t e = first; e < last; ++e)
-        {
-            const uint32_t other = s->place[e].corner;
-            sum = pls_add(sum, pls_scale(s->facet[other / d].normal, angle_at(s, other / d, (int)(other % d))));
-        }
-        const pls_vec3 mean = unit_or(sum, own->normal);
-        double level = 1.0;
-        for (size_t e = first; e < last; ++e) level = fmin(level, pls_dot(mean, s->facet[s->place[e].corner / d].normal));
         own->corner_normal[at % d] = mean, own->corner_level[at % d] = level, own->corner_form[at % d] = form;
     }
 }
@@ -322,22 +357,54 @@ static void tell_of_corners(seams *s)
     }
 }
 
-// ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
+// ---- pieces twice -------------------------------------------------------------------------------------------------------------------------------------------
 
-static pls_status allocate(seams *s)
+/// Corners of a piece in the order of their numbers.
+static void sorted_corners(const seams *s, uint32_t f, uint32_t n[3])
 {
-    const size_t all = (size_t)s->dimension * s->count;
-    PLS_TRY(pls_allocate(&s->place, all, sizeof *s->place, "corners of a wall"));
-    PLS_TRY(pls_allocate(&s->number, all, sizeof *s->number, "corners of a wall"));
-    PLS_TRY(pls_allocate(&s->side, all, sizeof *s->side, "seams of a wall"));
-    PLS_TRY(pls_allocate(&s->queue, s->count, sizeof *s->queue, "seams of a wall"));
-    return pls_allocate(&s->seen, s->count, sizeof *s->seen, "seams of a wall");
+    for (int k = 0; k < 3; ++k) n[k] = number_of(s, f, s->dimension == 3 ? k : k % 2);
+    for (int pass = 0; pass < 2; ++pass)
+        for (int k = 0; k < 2; ++k)
+            if (n[k] > n[k + 1]) swap_numbers(&n[k], &n[k + 1]);
 }
+
+/// Makes the sides of pieces between the same corners follow each other: by low, high and the third one.
+static void sort_pieces(seams *s)
+{
+    for (size_t f = 0; f < s->count; ++f)
+    {
+        uint32_t n[3];
+        sorted_corners(s, (uint32_t)f, n);
+        s->side[f] = (side){n[0], n[1], (uint32_t)f, (int)n[2]};
+    }
+    qsort(s->side, s->count, sizeof *s->side, by_all_corners);
+}
+
+pls_status pls_wall_unique(pls_vec3 (*corner)[3], size_t *count, int dimension)
+{
+    seams s = {.corner = corner, .count = *count, .dimension = dimension};
+    pls_status status = allocate(&s);
+    if (status == PLS_OK)
+    {
+        number_corners(&s);
+        sort_pieces(&s);
+        for (size_t f = 0; f < *count; ++f) s.seen[f] = false;
+        for (size_t k = 1; k < *count; ++k) // the first one of the same stays
+            s.seen[s.side[k].piece] = at_one_seam(&s.side[k - 1], &s.side[k]) && s.side[k - 1].place == s.side[k].place;
+        size_t left = 0;
+        for (size_t f = 0; f < *count; ++f)
+            if (!s.seen[f]) memmove(corner[left++], corner[f], sizeof *corner);
+        *count = left;
+    }
+    release(&s);
+    return status;
+}
+
+// ---- the call -----------------------------------------------------------------------------------------------------------------------------------------------
 
 pls_status pls_wall_facets(pls_vec3 (*corner)[3], size_t count, int dimension, pls_facet *out)
 {
     seams s = {.corner = corner, .count = count, .dimension = dimension, .facet = out};
-    if (count > UINT32_MAX / 4) return pls_fail(PLS_INVALID_ARGUMENT, "a wall of %zu pieces is too large; %u fit", count, UINT32_MAX / 4);
     const pls_status status = allocate(&s);
     if (status == PLS_OK)
     {
@@ -350,6 +417,6 @@ pls_status pls_wall_facets(pls_vec3 (*corner)[3], size_t count, int dimension, p
         number_corners(&s); // pieces that were turned over have theirs elsewhere
         tell_of_corners(&s);
     }
-    pls_release(&s.place), pls_release(&s.number), pls_release(&s.side), pls_release(&s.queue), pls_release(&s.seen);
+    release(&s);
     return status;
 }

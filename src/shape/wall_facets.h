@@ -17,6 +17,7 @@ typedef struct pls_facet
     pls_vec3 normal;           ///< on the one side, the same of all pieces that hang together
     uint32_t patch;            ///< pieces that hang together and are level to 15 degrees have the same
     uint32_t neighbour[3];     ///< number of the piece beyond side k; PLS_NO_FACET: the side is free
+    bool leans[3];             ///< the piece beyond goes on to another one there: this one ends on it, as a fin on a floor
     bool level[3];             ///< the neighbour is of the same patch
     double bend[3];            ///< by which the wall turns away from `normal` there; negative: towards it [rad]
     pls_vec3 side[3];          ///< unit, outwards: normal of the plane that halves the angle of the seam
@@ -28,6 +29,9 @@ typedef struct pls_facet
 
 /// Beyond side k lies facet `neighbour`, which goes on along `beyond`, at right angles to the side.
 void pls_facet_join(pls_facet *facet, int k, uint32_t neighbour, pls_vec3 beyond, bool level);
+
+/// Leaves one of pieces between the same corners, in any order; returns how many are left.
+pls_status pls_wall_unique(pls_vec3 (*corner)[3], size_t *count, int dimension);
 
 /// Tells of `count` pieces with D (2 or 3) corners each, none without length or area, and turns those over (exchanges two corners) whose normal is not that of the pieces before
 /// them that they hang together with. Corners at exactly the same place are one. OUT_OF_MEMORY.
