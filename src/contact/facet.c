@@ -11,22 +11,24 @@ static double nearest_along(pls_vec3 p, pls_vec3 q, pls_vec3 X)
     return fmin(fmax(pls_dot(pls_sub(X, p), e) / pls_dot(e, e), 0.0), 1.0);
 }
 
-static pls_facet_view view(pls_vec3 from, pls_vec3 normal)
+static pls_facet_view view(pls_vec3 from, pls_vec3 normal, bool at_rim)
 {
-    return (pls_facet_view){pls_dot(from, from), pls_dot(from, normal) < 0.0 ? -1.0 : 1.0};
+    return (pls_facet_view){pls_dot(from, from), pls_dot(from, normal) < 0.0 ? -1.0 : 1.0, at_rim};
 }
+
+static bool is_free(const pls_facet *f, int k) { return f->neighbour[k] == PLS_NO_FACET; }
 
 static pls_facet_view of_segment(const pls_facet *f, const pls_vec3 *v, pls_vec3 X)
 {
     const double s = nearest_along(v[0], v[1], X);
-    if (s > 0.0 && s < 1.0) return view(pls_sub(X, pls_add(v[0], pls_scale(pls_sub(v[1], v[0]), s))), f->normal);
+    if (s > 0.0 && s < 1.0) return view(pls_sub(X, pls_add(v[0], pls_scale(pls_sub(v[1], v[0]), s))), f->normal, false);
     const int k = s > 0.0;
-    return view(pls_sub(X, v[k]), f->side_normal[k]);
+    return view(pls_sub(X, v[k]), f->side_normal[k], is_free(f, k));
 }
 
 static pls_facet_view of_triangle(const pls_facet *f, const pls_vec3 *v, pls_vec3 X)
 {
-    pls_facet_view best = {INFINITY, 1.0};
+    pls_facet_view best = {INFINITY, 1.0, false};
     bool over = true;
     for (int k = 0; k < 3; ++k)
     {
@@ -34,11 +36,13 @@ static pls_facet_view of_triangle(const pls_facet *f, const pls_vec3 *v, pls_vec
         if (pls_dot(pls_cross(pls_sub(q, p), pls_sub(X, p)), f->normal) >= 0.0) continue; // on the inner side
         over = false;
         const double s = nearest_along(p, q, X);
-        const pls_vec3 normal = s <= 0.0 ? f->corner_normal[k] : s >= 1.0 ? f->corner_normal[(k + 1) % 3] : f->side_normal[k];
-        const pls_facet_view now = view(pls_sub(X, pls_add(p, pls_scale(pls_sub(q, p), s))), normal);
+        const int at = s <= 0.0 ? k : s >= 1.0 ? (k + 1) % 3 : -1; // corner
+        const pls_vec3 normal = at < 0 ? f->side_normal[k] : f->corner_normal[at], x = pls_add(p, pls_scale(pls_sub(q, p), s));
+        const bool rim = is_free(f, k) || (at >= 0 && is_free(f, (at + 2) % 3)) || (at >= 0 && is_free(f, at));
+        const pls_facet_view now = view(pls_sub(X, x), normal, rim);
         if (now.distance < best.distance) best = now;
     }
-    return over ? view(pls_scale(f->normal, pls_dot(pls_sub(X, v[0]), f->normal)), f->normal) : best;
+    return over ? view(pls_scale(f->normal, pls_dot(pls_sub(X, v[0]), f->normal)), f->normal, false) : best;
 }
 
 pls_facet_view pls_facet_seen_from(const pls_posed *facet, const pls_facet *seams, pls_vec3 X)
@@ -130,5 +134,7 @@ pls_prism pls_facet_prism(const pls_posed *facet, const pls_facet *f, pls_vec3 o
     p.faces = p.planes;
     for (int k = 0; k < sides; ++k)
         if (f->neighbour[k] != PLS_NO_FACET && !pls_seam_is_valley(f, k, front)) add_plane(&p, side[k], corner[k], 0.0);
+    const double reach = f->reach[front < 0.0] * facet->scale;
+    if (isfinite(reach)) add_plane(&p, pls_scale(n, -1.0), corner[0], reach);
     return p;
 }

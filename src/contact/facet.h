@@ -13,6 +13,7 @@ typedef struct pls_facet_view
 {
     double distance; ///< squared [m^2]
     double front;    ///< 1: the point is on the side of the facet's normal; -1: on the other one
+    bool at_rim;     ///< the nearest point is on a free side
 } pls_facet_view;
 
 /// Where the nearest point of the facet is one of its sides or corners, the facets around it decide together on which side of the wall the point is.

@@ -598,14 +598,9 @@ bool pls_narrow_phase_from(const pls_posed *a, const pls_posed *b, const pls_nar
     pls_depth d;
     ++counts->queries;
     const bool on_wall = pls_is_wall_pair(a, b, options);
-    if (on_wall && pls_wall_needs_no_depth(a, b))
-    {
-        one_facet(a, b, options, &(pls_touch){.delta = a->size, .normal = pls_vec(0.0, 0.0, 1.0), .point = centre_of(a)}, out);
-        return false;
-    }
     const bool in_pieces = a->shape->sample || b->shape->sample; // as they are in worlds
     const bool cylinders = in_pieces && pls_is_cylinder_pair(a->shape, b->shape);
-    if (options->faces != PLS_FACES_POINT && in_pieces && !cylinders && pls_is_sampled_pair(a->shape, b->shape))
+    if (options->faces != PLS_FACES_POINT && in_pieces && !cylinders && !on_wall && pls_is_sampled_pair(a->shape, b->shape))
     {
         pls_sampled_touch(a, b, options, out);
         out->stands = true;

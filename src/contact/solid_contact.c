@@ -101,7 +101,8 @@ static double height_of_box(const pls_posed *p, const pls_posed *plane)
     return pls_dot(n, pls_sub(p->position, plane->position)) + p->scale * least;
 }
 
-static bool bounds_overlap(const pls_posed *a, const pls_posed *b)
+/// Do they come within `gap`?
+static bool bounds_near(const pls_posed *a, const pls_posed *b, double gap)
 {
     if (!isfinite(b->shape->radius)) // a half-space; corners of the box may reach further than the sphere, by which pairs are listed
     {
@@ -109,10 +110,12 @@ static bool bounds_overlap(const pls_posed *a, const pls_posed *b)
         return pls_dot(n, pls_sub(centre_of(a), b->position)) < a->size && height_of_box(a, b) < 0.0;
     }
     const pls_vec3 x = centre_of(a), y = centre_of(b), d = pls_sub(y, x);
-    const double reach = a->size + b->size;
+    const double reach = a->size + b->size + gap, of_a = a->size + gap, of_b = b->size + gap;
     if (!(pls_dot(d, d) < reach * reach)) return false;
-    return outside_box(b, x) < a->size * a->size && outside_box(a, y) < b->size * b->size;
+    return outside_box(b, x) < of_a * of_a && outside_box(a, y) < of_b * of_b;
 }
+
+static bool bounds_overlap(const pls_posed *a, const pls_posed *b) { return bounds_near(a, b, 0.0); }
 
 // ---- touch ----------------------------------------------------------------------------------------------------------------------------------------------------
 
@@ -130,16 +133,13 @@ static bool spares_search(const pls_law *law, const pls_solid_pair *pair)
     return !law->lever_at_surface && law->narrow.faces != PLS_FACES_POINT && law->narrow.solver == PLS_SOLVER_DEPTH && !pair->lets_go;
 }
 
-/// What grouping facets goes by: the depth, or that there is none to know.
+/// What grouping facets goes by.
 static void find_depth_on_wall(const pls_solid_parts *p, const pls_narrow_options *options, pls_pair_state *state, pls_touch *touch,
                                pls_narrow_counts *counts)
 {
     pls_narrow_options point = *options;
     point.faces = PLS_FACES_POINT;
-    if (!pls_wall_needs_no_depth(p->a, p->b))
-        pls_narrow_phase_from(p->a, p->b, &point, state, NULL, touch, counts);
-    else
-        *touch = (pls_touch){.delta = p->a->size, .normal = pls_vec(0.0, 0.0, 1.0), .point = centre_of(p->a)};
+    pls_narrow_phase_from(p->a, p->b, &point, state, NULL, touch, counts);
 }
 
 static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t c, pls_narrow_counts *counts)
@@ -158,11 +158,11 @@ static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t
         memset(&memory->state, 0, sizeof memory->state); // as below; the last step may have done without a record
         return;
     }
-    pair->tracked = bounds_overlap(p.a, p.b) && !(pair->lets_go && behind(list, pair));
+    pair->on_wall = pls_is_wall_pair(p.a, p.b, &law->narrow);
+    pair->tracked = bounds_near(p.a, p.b, pair->on_wall ? PLS_NARROW_FAR * p.a->size : 0.0) && !(pair->lets_go && behind(list, pair));
     touch->delta = 0.0;
     const pls_narrow_counts before = *counts;
     bool recorded = false;
-    pair->on_wall = pls_is_wall_pair(p.a, p.b, &law->narrow);
     if (pair->on_wall)
     {
         if (pair->tracked)
@@ -547,15 +547,15 @@ static void inherit(pls_solid_list *list, size_t first, size_t last, const uint8
 void pls_solid_contacts(pls_solid_list *list, const pls_contact_input *in, const pls_solid_block *block, pls_contact_work *work,
                         pls_narrow_counts *counts)
 {
-    enum { MOST = PLS_CONTACT_BLOCK, FEW = PLS_FEW_CANDIDATES };
+    enum { MOST = PLS_CONTACT_BLOCK };
     uint32_t batch[MOST];
     size_t taken = 0;
     for (size_t c = block->first; c < block->last; ++c) find_touch(list, in, c, counts);
     for (size_t first = block->first, last; first < block->last; first = last)
     {
-        uint8_t next[FEW];
-        for (last = first + 1; last < block->last && last - first < FEW && list->pair[last].row_i == list->pair[first].row_i &&
-                               list->pair[last].row_j == list->pair[first].row_j;)
+        uint8_t *next = list->next + first;
+        for (last = first + 1;
+             last < block->last && list->pair[last].row_i == list->pair[first].row_i && list->pair[last].row_j == list->pair[first].row_j;)
             ++last;
         choose_acting(list, in, first, last, next);
         pls_wall_groups(list, in, first, last, next);

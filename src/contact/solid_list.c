@@ -123,6 +123,7 @@ static pls_status room_for(pls_solid_list *list, size_t count)
     PLS_TRY(pls_reallocate(&list->pair, capacity, wanted, sizeof *list->pair, "pairs of solids"));
     PLS_TRY(pls_reallocate(&list->memory, capacity, wanted, sizeof *list->memory, "pairs of solids"));
     PLS_TRY(pls_reallocate(&list->touch, capacity, wanted, sizeof *list->touch, "pairs of solids"));
+    PLS_TRY(pls_reallocate(&list->next, capacity, wanted, sizeof *list->next, "pairs of solids"));
     PLS_TRY(pls_reallocate(&list->record, capacity, wanted, sizeof *list->record, "pairs of solids"));
     PLS_TRY(pls_reallocate(&list->slot, capacity * PLS_SOLID_SLOT, wanted * PLS_SOLID_SLOT, sizeof *list->slot, "pairs of solids"));
     list->capacity = wanted;
@@ -272,7 +273,8 @@ static pls_status pieces_near(pls_solid_list *list, const pls_solid_source *s, u
                               uint32_t row, part_numbers *found)
 {
     const pls_body_place *p = &s->bodies->place[row];
-    const double x[3] = {p->x, p->y, p->z}, radius = p->radius + s->gap, *edge = s->domain->edge;
+    const bool solid = (s->bodies->kind[row].flags & PLS_BODY_SOLID) != 0; // to these facets matter that they are near to (wall_groups.c)
+    const double x[3] = {p->x, p->y, p->z}, radius = p->radius * (solid ? 1.0 + PLS_NARROW_FAR : 1.0) + s->gap, *edge = s->domain->edge;
     const uint32_t parts = pls_part_count(s->shape[s->bodies->kind[row].shape]);
     int image[3][2];
     for (int a = 0; a < 3; ++a) images_near(s->domain, box, a, x[a], radius, image[a]);
@@ -605,7 +607,7 @@ void pls_solid_list_forget(pls_solid_list *list) { empty(list); }
 
 size_t pls_solid_list_bytes(const pls_solid_list *list)
 {
-    return list->capacity * (sizeof *list->pair + sizeof *list->memory + sizeof *list->touch + sizeof *list->record +
+    return list->capacity * (sizeof *list->pair + sizeof *list->memory + sizeof *list->touch + sizeof *list->next + sizeof *list->record +
                              PLS_SOLID_SLOT * sizeof *list->slot) +
            list->block_capacity * sizeof *list->block + list->entry_capacity * sizeof *list->entry;
 }
@@ -615,6 +617,7 @@ void pls_solid_list_free(pls_solid_list *list)
     pls_release(&list->pair);
     pls_release(&list->memory);
     pls_release(&list->touch);
+    pls_release(&list->next);
     pls_release(&list->record);
     pls_release(&list->slot);
     pls_release(&list->block);

@@ -75,6 +75,7 @@ typedef struct pls_solid_list
     pls_solid_pair *pair; ///< in order of (lower row, upper row, part of i, part of j, image)
     pls_solid_memory *memory;
     pls_touch *touch; ///< of the last step
+    uint8_t *next;    ///< PLS_SOLID_ states that are being found
     double *slot;
     pls_overlap_record *record; ///< of the overlap at some step, or nothing
     size_t count, capacity;

@@ -30,7 +30,7 @@ bool pls_is_wall_pair(const pls_posed *a, const pls_posed *facet, const pls_narr
     return options->faces != PLS_FACES_POINT && pls_is_facet(facet->shape) && kind_of(a, facet) != NONE;
 }
 
-bool pls_wall_needs_no_depth(const pls_posed *a, const pls_posed *facet) { return pls_is_sampled_pair(a->shape, facet->shape); }
+bool pls_wall_has_point(const pls_posed *a) { return pls_has_line(a->shape); }
 
 // ---- sums -----------------------------------------------------------------------------------------------------------------------------------------------
 

@@ -319,6 +319,41 @@ static pls_status prepare_line(const pls_shape_input *input, int dimension, void
     return status;
 }
 
+/// From the middle of a piece along `way`, as far as no other piece is nearer: behind a wall of some thickness to the middle of it.
+static double reach_along(const pls_shape *shape, pls_vec3 middle, pls_vec3 way, double size, double margin)
+{
+    enum { HALVINGS = 6 };
+    const double same = 1e-6, first = 1e-3, most = 4.0 * shape->radius;
+    double low = 0.0, high = first * size;
+    for (; high < most; low = high, high *= 2.0)
+        if (pls_union_sdf(shape, pls_add(middle, pls_scale(way, high))) + margin < high * (1.0 - same)) break;
+    if (!(high < most)) return INFINITY;
+    for (int k = 0; k < HALVINGS; ++k)
+    {
+        const double s = 0.5 * (low + high), distance = pls_union_sdf(shape, pls_add(middle, pls_scale(way, s))) + margin;
+        *(distance < s * (1.0 - same) ? &high : &low) = s;
+    }
+    return low;
+}
+
+void pls_wall_find_reach(pls_shape *shape)
+{
+    enum {
+        MANY = 256
+    }; // pieces whose boxes are about one place, as in a fan of thousands: distances take long there, and are not asked for
+    for (size_t k = 0; k < shape->part_count; ++k)
+    {
+        const pls_shape_part *part = &shape->part[k];
+        if (!pls_shape_facet(part->shape)) return;
+        pls_facet *facet = &((piece *)part->shape->data)->facet;
+        const bool many = pls_shape_parts_near(shape, part->position, 0.0, NULL, 0) > MANY;
+        for (int side = 0; side < 2; ++side)
+            facet->reach[side] = many ? INFINITY
+                                      : reach_along(shape, part->position, pls_scale(facet->normal, side ? 1.0 : -1.0), part->shape->radius,
+                                                    part->shape->margin);
+    }
+}
+
 static const pls_shape_part *parts(const pls_shape *shape, size_t *count)
 {
     const wall *w = shape->data;

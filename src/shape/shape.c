@@ -12,6 +12,7 @@
 #include "shape/part_tree.h"
 #include "shape/sdf_trial.h"
 #include "shape/surface_sample.h"
+#include "shape/wall_facets.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -330,6 +331,7 @@ static pls_status measure(pls_shape *shape, const char *name)
     }
     shape->moments = pls_vec(0.0, 0.0, 0.0); // the frame of a wall is that in which it is given
     shape->radius = ops->bounding_radius ? ops->bounding_radius(shape) : pls_shape_reach(shape, shape->mass.centre);
+    pls_wall_find_reach(shape);
     return PLS_OK;
 }
 

@@ -243,6 +243,7 @@ static void agree_on_fronts(seams *s)
         while (head < tail)
         {
             const uint32_t f = s->queue[head++];
+            s->facet[f].sheet = (uint32_t)first;
             for (int k = 0, j; k < s->dimension; ++k)
             {
                 if (!hangs_together(s, f, k, &j)) continue;
