@@ -16,7 +16,7 @@ typedef struct target
     pls_vec3 outwards; ///< from where grains come
 } target;
 
-/// The table is a block with its top in z = 0, the sheet lies in z = 0, the trough has slopes of 30 degrees and its bottom along the y axis.
+/// The table is a block with its top in z = 0, the sheet lies in z = 0, the trough has slopes of 30 degrees, the dell of 8, and their bottoms along the y axis.
 static const target targets[] = {
     {"an edge of a block", PLS_TEST_DATA "/table.obj", {1, -0.6, 0}, {1, 0.6, 0}, {0.7, 0, 0.7}},
     {"a corner of a block", PLS_TEST_DATA "/table.obj", {1, 1, 0}, {1, 1, 0}, {0.6, 0.6, 0.6}},
@@ -25,6 +25,9 @@ static const target targets[] = {
     {"the rim of a sheet, from above", PLS_TEST_DATA "/sheet.obj", {0.9, -0.6, 0}, {1.1, 0.6, 0}, {0.2, 0, 1}},
     {"the seams of a sheet", PLS_TEST_DATA "/sheet.obj", {-0.5, -0.5, 0}, {0.5, 0.5, 0}, {0.3, 0.2, 1}},
     {"the bottom of a trough", PLS_TEST_DATA "/trough.obj", {0, -0.5, 0}, {0, 0.5, 0}, {0, 0.3, 1}},
+    {"the bottom of a dell", PLS_TEST_DATA "/dell.obj", {0, -0.5, 0}, {0, 0.5, 0}, {0, 0.3, 1}},
+    {"an edge of a thin plate", PLS_TEST_DATA "/plate.obj", {1, -0.6, 0}, {1, 0.6, 0}, {0.5, 0, 1}},
+    {"the corner of a floor and a fin on it", PLS_TEST_DATA "/fin.obj", {0.1, -0.6, 0.1}, {0.2, 0.6, 0.1}, {1, 0, 1}},
 };
 
 static pls_vec3 random_vector(pls_random *random)
@@ -97,6 +100,6 @@ void case_wall_edges(verify_sheet *sheet)
             }
             const char *law = faces == PLS_FACES_VOLUME ? "volume" : "manifold";
             sheet_below(sheet, median(count, error), 1e-5, "%s, %s: change of energy, median of %zu flights", targets[k].name, law, count);
-            sheet_below(sheet, worst, 2e-3, "%s, %s: the worst", targets[k].name, law);
+            sheet_below(sheet, worst, 1e-4, "%s, %s: the worst", targets[k].name, law);
         }
 }
