@@ -26,12 +26,15 @@ int pls_facet_join_posed(const pls_posed *facet, pls_facet *seams, const pls_pos
 /// Does a seam, as seen from the front, turn towards it, and more than within a patch?
 static inline bool pls_seam_is_valley(const pls_facet *f, int k, double front) { return !f->level[k] && f->bend[k] * front < 0.0; }
 
+/// The front, its opposite in the middle of the wall's thickness, and for each of three sides a plane, a bevel and that of a corner.
+enum { PLS_PRISM_PLANES = 2 + 3 * 3 };
+
 /// What is behind a facet.
 struct pls_prism
 {
-    int faces;                ///< those that depth counts from: the front, free sides, and bevels
-    int planes;               ///< all; the rest are planes that halve the angle to the facet beyond
-    pls_half_space plane[10]; ///< outwards
+    int faces;                              ///< those that depth counts from: the front, free sides, and bevels
+    int planes;                             ///< all; the rest halve the angle to the facet beyond, and the thickness of the wall
+    pls_half_space plane[PLS_PRISM_PLANES]; ///< outwards
 };
 
 /// About `origin`, the front raised by `margin` beside that of the facet. Behind a facet is what is nearer to it than to its neighbours; in a valley all that is behind its plane, so

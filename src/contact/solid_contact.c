@@ -133,13 +133,16 @@ static bool spares_search(const pls_law *law, const pls_solid_pair *pair)
     return !law->lever_at_surface && law->narrow.faces != PLS_FACES_POINT && law->narrow.solver == PLS_SOLVER_DEPTH && !pair->lets_go;
 }
 
-/// What grouping facets goes by.
+/// What grouping facets goes by: the depth, or that there is none to know.
 static void find_depth_on_wall(const pls_solid_parts *p, const pls_narrow_options *options, pls_pair_state *state, pls_touch *touch,
                                pls_narrow_counts *counts)
 {
     pls_narrow_options point = *options;
     point.faces = PLS_FACES_POINT;
-    pls_narrow_phase_from(p->a, p->b, &point, state, NULL, touch, counts);
+    if (!pls_wall_needs_no_depth(p->a, p->b))
+        pls_narrow_phase_from(p->a, p->b, &point, state, NULL, touch, counts);
+    else
+        *touch = (pls_touch){.delta = p->a->size, .normal = pls_vec(0.0, 0.0, 1.0), .point = centre_of(p->a)};
 }
 
 static void find_touch(pls_solid_list *list, const pls_contact_input *in, size_t c, pls_narrow_counts *counts)

@@ -268,13 +268,27 @@ static void images_near(const pls_domain *domain, const world_box *box, int axis
     image[1] = (int)fmin(INT16_MAX, floor((x + reach - box->lower[axis]) / edge));
 }
 
+/// About a body's centre of mass, what lies within the bounding spheres of its parts, and a little more: to solids facets matter that they are only near to (wall_groups.c).
+static double reach_at_walls(const pls_shape *shape, double scale)
+{
+    double reach = shape->part_count ? 0.0 : shape->radius;
+    for (size_t k = 0; k < shape->part_count; ++k)
+    {
+        const pls_shape_part *part = &shape->part[k];
+        const pls_vec3 centre = pls_part_to_whole(part, part->shape->mass.centre);
+        reach = fmax(reach, pls_length(pls_sub(centre, shape->mass.centre)) + part->scale * part->shape->radius);
+    }
+    return reach * scale * (1.0 + PLS_NARROW_FAR);
+}
+
 /// Candidates of one body with the pieces of a wall and of its images.
 static pls_status pieces_near(pls_solid_list *list, const pls_solid_source *s, uint32_t wall, const pls_posed *posed, const world_box *box,
                               uint32_t row, part_numbers *found)
 {
     const pls_body_place *p = &s->bodies->place[row];
-    const bool solid = (s->bodies->kind[row].flags & PLS_BODY_SOLID) != 0; // to these facets matter that they are near to (wall_groups.c)
-    const double x[3] = {p->x, p->y, p->z}, radius = p->radius * (solid ? 1.0 + PLS_NARROW_FAR : 1.0) + s->gap, *edge = s->domain->edge;
+    const bool solid = (s->bodies->kind[row].flags & PLS_BODY_SOLID) != 0;
+    const double own = solid ? reach_at_walls(s->shape[s->bodies->kind[row].shape], s->bodies->scale[row]) : p->radius;
+    const double x[3] = {p->x, p->y, p->z}, radius = own + s->gap, *edge = s->domain->edge;
     const uint32_t parts = pls_part_count(s->shape[s->bodies->kind[row].shape]);
     int image[3][2];
     for (int a = 0; a < 3; ++a) images_near(s->domain, box, a, x[a], radius, image[a]);
@@ -286,8 +300,8 @@ static pls_status pieces_near(pls_solid_list *list, const pls_solid_source *s, u
                 pls_vec3 X = pls_vec(x[0], x[1], x[2]); // as the wall itself sees it
                 if (s->domain->any_periodic) X = pls_sub(X, pls_vec(i * edge[0], j * edge[1], k * edge[2]));
                 PLS_TRY(parts_near(posed, X, radius, found));
-                for (uint32_t own = 0; own < parts; ++own)
-                    for (size_t m = 0; m < found->count; ++m) PLS_TRY(add_candidate(list, s, &pair, own, found->part[m]));
+                for (uint32_t part = 0; part < parts; ++part)
+                    for (size_t m = 0; m < found->count; ++m) PLS_TRY(add_candidate(list, s, &pair, part, found->part[m]));
             }
     return PLS_OK;
 }

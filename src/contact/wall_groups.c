@@ -11,11 +11,12 @@
 
 #include "contact/wall_touch.h"
 
-static const double nearness = 12.0;        ///< of the deepest depth: gap up to which a facet may matter; valleys of 5 degrees
-static const double holds = PLS_NARROW_FAR; ///< of the body's size: gap up to which a facet that touched does
-static const double opposes = -0.95;        ///< cosine of a push and a front that contradict each other
+static const double nearness = 12.0; ///< of the deepest depth: gap up to which a facet may matter; valleys of 5 degrees
+static const double holds =
+    PLS_NARROW_FAR; ///< of the body's size: gap up to which a facet that touched does; of a part of a compound no more than of that part
+static const double opposes = -0.95; ///< cosine of a push and a front that contradict each other
 
-enum { MOST = 4096, SLOTS = 4 * MOST, NONE = UINT16_MAX };
+enum { MOST = 16384, SLOTS = 4 * MOST, NONE = UINT16_MAX };
 
 /// What facets are looked up by.
 enum by { NUMBER, PATCH, SHEET };
@@ -30,6 +31,7 @@ typedef struct table
 typedef struct facets
 {
     size_t count;
+    bool by_pieces; ///< of the body's surface: nothing is known of its depths
     uint32_t candidate[MOST];
     uint16_t group[MOST]; ///< place of another one of the same group, of the first one its own
     double front[MOST];   ///< the side on which the body is; 0: it has nothing to do with it
@@ -113,8 +115,9 @@ static void look(const pls_solid_list *list, const pls_contact_input *in, facets
     pls_solid_parts_of(list, in, f->candidate[k], &p);
     const pls_facet seams = seams_of(list, in, f, k, p.b);
     f->seen[k] = pls_facet_seen_from(p.b, &seams, pls_posed_world(p.a, p.a->shape->mass.centre));
-    f->by_push[k] = list->touch[f->candidate[k]].delta > 0.0 && f->seen[k].at_rim;
-    f->push[k] = -pls_dot(list->touch[f->candidate[k]].normal, pls_posed_turn(p.b, seams.normal));
+    f->by_pieces = pls_wall_needs_no_depth(p.a, p.b);
+    f->by_push[k] = list->touch[f->candidate[k]].delta > 0.0 && f->seen[k].at_rim && !f->by_pieces;
+    f->push[k] = f->by_pieces ? 0.0 : -pls_dot(list->touch[f->candidate[k]].normal, pls_posed_turn(p.b, seams.normal));
 }
 
 /// Does facet k know better than facet j on which side of their sheet the body is? Who touched before does, then the nearest of those that it passes through: only there do the normals at
@@ -160,16 +163,25 @@ static void find_fronts(const pls_solid_list *list, facets *f)
     }
 }
 
+/// Is a facet one that the body touches or touched, or as near to as `gap`?
+static bool matters(const pls_solid_list *list, size_t c, double gap)
+{
+    const double still = list->memory[c].front != 0.0 ? holds * list->posed[list->pair[c].row_i].size : 0.0;
+    return list->pair[c].on_wall && list->touch[c].delta > -fmax(gap, still);
+}
+
 static void find_facets(const pls_solid_list *list, const pls_contact_input *in, size_t first, size_t last, facets *f)
 {
     double gap = 0.0;
+    size_t all = 0;
     f->count = 0;
     for (size_t c = first; c < last; ++c)
         if (list->pair[c].on_wall) gap = fmax(gap, nearness * list->touch[c].delta);
+    for (size_t c = first; c < last; ++c) all += matters(list, c, gap);
+    if (all > MOST) gap = 0.0; // of so many those that are only near may be left out
     for (size_t c = first; c < last && f->count < MOST; ++c)
     {
-        const double still = list->memory[c].front != 0.0 ? holds * list->posed[list->pair[c].row_i].size : 0.0;
-        if (!list->pair[c].on_wall || !(list->touch[c].delta > -fmax(gap, still))) continue;
+        if (!matters(list, c, gap)) continue;
         const size_t k = f->count++;
         f->candidate[k] = (uint32_t)c, f->group[k] = (uint16_t)k, f->any[k] = false;
     }
@@ -325,7 +337,8 @@ static void forget_fronts(pls_solid_list *list, size_t first, size_t last, const
         if (next[c - first] == PLS_SOLID_APART) list->memory[c].front = 0.0;
 }
 
-void pls_wall_groups(pls_solid_list *list, const pls_contact_input *input, size_t first, size_t last, uint8_t *next)
+/// Candidates of one part of a body.
+static void group_part(pls_solid_list *list, const pls_contact_input *in, size_t first, size_t last, uint8_t *next)
 {
     bool any = false, near = false;
     for (size_t c = first; c < last; ++c)
@@ -338,10 +351,19 @@ void pls_wall_groups(pls_solid_list *list, const pls_contact_input *input, size_
     if (near)
     {
         facets f;
-        find_facets(list, input, first, last, &f);
-        find_groups(list, input, &f);
+        find_facets(list, in, first, last, &f);
+        find_groups(list, in, &f);
         for (uint16_t k = 0; k < f.count; ++k)
-            if (f.group[k] == k && f.front[k] != 0.0) touch_group(list, input, &f, k, first, next);
+            if (f.group[k] == k && f.front[k] != 0.0) touch_group(list, in, &f, k, first, next);
     }
     forget_fronts(list, first, last, next);
+}
+
+void pls_wall_groups(pls_solid_list *list, const pls_contact_input *input, size_t first, size_t last, uint8_t *next)
+{
+    for (size_t from = first, to; from < last; from = to)
+    {
+        for (to = from + 1; to < last && list->memory[to].part_i == list->memory[from].part_i;) ++to;
+        group_part(list, input, from, to, next + (from - first));
+    }
 }

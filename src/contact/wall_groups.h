@@ -5,7 +5,8 @@
 #include "contact/solid_contact.h"
 
 /// Candidates first .. last are all of one pair of bodies, and their depths are known. Of those on facets `next` gets the PLS_SOLID_ states: of each group of facets one candidate
-/// touches, and its touch becomes that of all of them; the rest are in its shade. No more than 4096 facets that the body is near to count, the first ones.
+/// touches, and its touch becomes that of all of them; the rest are in its shade. Of more than 16384 facets that a part of the body is near
+/// to those that it touches count, and of these the first 16384.
 void pls_wall_groups(pls_solid_list *list, const pls_contact_input *input, size_t first, size_t last, uint8_t *next);
 
 #endif

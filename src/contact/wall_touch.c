@@ -30,6 +30,8 @@ bool pls_is_wall_pair(const pls_posed *a, const pls_posed *facet, const pls_narr
     return options->faces != PLS_FACES_POINT && pls_is_facet(facet->shape) && kind_of(a, facet) != NONE;
 }
 
+bool pls_wall_needs_no_depth(const pls_posed *a, const pls_posed *facet) { return pls_is_sampled_pair(a->shape, facet->shape); }
+
 bool pls_wall_has_point(const pls_posed *a) { return pls_has_line(a->shape); }
 
 // ---- sums -----------------------------------------------------------------------------------------------------------------------------------------------
@@ -76,7 +78,11 @@ bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *se
     if (kind == PIECES) origin = pls_posed_world(a, a->shape->mass.centre);
     const pls_vec3 start = origin;
     const double margin = kind == PIECES ? 0.0 : a->shape->margin * a->scale;
-    const pls_prism prism = pls_facet_prism(facet, seams, origin, front, margin);
+    pls_prism prism = {.planes = 0};
+    if (kind == LINE)
+        prism.plane[0] = (pls_half_space){pls_vec(0.0, 0.0, 0.0), 0.0}; // lines go by the distance from the facet itself
+    else
+        prism = pls_facet_prism(facet, seams, origin, front, margin);
     pls_overlap_integrals P;
     double deep = depth->delta;
     bool any = false;

@@ -323,7 +323,7 @@ static pls_status prepare_line(const pls_shape_input *input, int dimension, void
 static double reach_along(const pls_shape *shape, pls_vec3 middle, pls_vec3 way, double size, double margin)
 {
     enum { HALVINGS = 6 };
-    const double same = 1e-6, first = 1e-3, most = 4.0 * shape->radius;
+    const double same = 1e-6, first = 1e-2, most = 4.0 * shape->radius;
     double low = 0.0, high = first * size;
     for (; high < most; low = high, high *= 2.0)
         if (pls_union_sdf(shape, pls_add(middle, pls_scale(way, high))) + margin < high * (1.0 - same)) break;
@@ -334,6 +334,21 @@ static double reach_along(const pls_shape *shape, pls_vec3 middle, pls_vec3 way,
         *(distance < s * (1.0 - same) ? &high : &low) = s;
     }
     return low;
+}
+
+/// The most of that from its middle and from beside the middles of its sides.
+static double reach_behind(const pls_shape *shape, const pls_shape_part *part, int side)
+{
+    const piece *p = part->shape->data;
+    const pls_vec3 way = pls_scale(p->facet.normal, side ? 1.0 : -1.0);
+    const double size = part->shape->radius, margin = part->shape->margin, beside = 0.98;
+    double most = reach_along(shape, part->position, way, size, margin);
+    for (int k = 0; k < part->shape->dimension && isfinite(most); ++k)
+    {
+        const pls_vec3 middle = pls_scale(pls_add(p->vertex[k], p->vertex[(k + 1) % part->shape->dimension]), 0.5 * beside);
+        most = fmax(most, reach_along(shape, pls_add(part->position, middle), way, size, margin));
+    }
+    return most;
 }
 
 void pls_wall_find_reach(pls_shape *shape)
@@ -347,10 +362,7 @@ void pls_wall_find_reach(pls_shape *shape)
         if (!pls_shape_facet(part->shape)) return;
         pls_facet *facet = &((piece *)part->shape->data)->facet;
         const bool many = pls_shape_parts_near(shape, part->position, 0.0, NULL, 0) > MANY;
-        for (int side = 0; side < 2; ++side)
-            facet->reach[side] = many ? INFINITY
-                                      : reach_along(shape, part->position, pls_scale(facet->normal, side ? 1.0 : -1.0), part->shape->radius,
-                                                    part->shape->margin);
+        for (int side = 0; side < 2; ++side) facet->reach[side] = many ? INFINITY : reach_behind(shape, part, side);
     }
 }
 

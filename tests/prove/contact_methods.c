@@ -635,14 +635,6 @@ static void write_numbers(FILE *out, const figures *f, int pairs, int collisions
     }
 }
 
-/// A fifth of the collisions is enough where a query takes long: a cylinder on many faces, and eq. 14 with a proximal map that is searched for by values of an SDF.
-static int collisions_of(const int pair[2], int collisions)
-{
-    const bool faces = pair[0] == BOX || pair[0] == CYLINDER || pair[0] == POLYHEDRON || pair[0] == PRISM || pair[0] == COMPOUND;
-    const bool slow = (pair[0] == CYLINDER && pair[1] == POLYHEDRON) || (faces && pair[1] == SDF_ONLY);
-    return slow ? (collisions + 4) / 5 : collisions;
-}
-
 static bool is_chosen(const int pair[2], int k) { return chosen[k][0] == pair[0] && chosen[k][1] == pair[1]; }
 
 static void measure(pls_shape *const *shapes, const int pair[2], int collisions, figures *f)
@@ -652,7 +644,7 @@ static void measure(pls_shape *const *shapes, const int pair[2], int collisions,
     name_pair(pair[0], pair[1], f->name);
     for (int k = 0; k < CHOSEN; ++k)
         if (is_chosen(pair, k)) compare_depths(a, b, stream, f), count_iterations(a, b, stream, f);
-    f->collisions = collisions_of(pair, collisions);
+    f->collisions = collisions;
     measure_energy(a, b, stream, f);
     fprintf(stderr, "%s\n", f->name);
 }
