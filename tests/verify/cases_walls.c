@@ -26,7 +26,7 @@ static const target targets[] = {
     {"the seams of a sheet", PLS_TEST_DATA "/sheet.obj", {-0.5, -0.5, 0}, {0.5, 0.5, 0}, {0.3, 0.2, 1}},
     {"the bottom of a trough", PLS_TEST_DATA "/trough.obj", {0, -0.5, 0}, {0, 0.5, 0}, {0, 0.3, 1}},
     {"the bottom of a dell", PLS_TEST_DATA "/dell.obj", {0, -0.5, 0}, {0, 0.5, 0}, {0, 0.3, 1}},
-    {"an edge of a thin plate", PLS_TEST_DATA "/plate.obj", {1, -0.6, 0}, {1, 0.6, 0}, {0.5, 0, 1}},
+    {"an edge of a plate", PLS_TEST_DATA "/plate.obj", {1, -0.6, 0}, {1, 0.6, 0}, {0.5, 0, 1}},
     {"an edge of an octahedron", PLS_TEST_DATA "/octahedron.obj", {0.2, 0, -0.2}, {0.8, 0, -0.8}, {1, 0.3, 1}},
     {"the corner of a floor and a fin on it", PLS_TEST_DATA "/fin.obj", {0.1, -0.6, 0.1}, {0.2, 0.6, 0.1}, {1, 0, 1}},
 };
