@@ -152,9 +152,10 @@ static weights fading_weights(double d, double r, double holds)
     weights w = plain_weights(d);
     const double half = 0.5 * r, beyond = d - half;
     if (!(beyond > 0.0)) return w;
-    const double x = fmin(beyond / half, 1.0), xx = x * x, xxx = xx * x, fades = 1.0 - holds, faded = fades * xx * (3.0 - 2.0 * x);
+    const double x = fmin(beyond / half, 1.0), square = x * x, cube = square * x, fades = 1.0 - holds,
+                 faded = fades * square * (3.0 - 2.0 * x);
     // Integrals of f, f x and f x^2 over x from 0, f = 3 x^2 - 2 x^3; from x = 1 on f is 1.
-    const double f0 = xxx - 0.5 * xxx * x, f1 = xxx * x * (0.75 - 0.4 * x), f2 = xxx * xx * (0.6 - x / 3.0);
+    const double f0 = cube - 0.5 * cube * x, f1 = cube * x * (0.75 - 0.4 * x), f2 = cube * square * (0.6 - x / 3.0);
     const double end = fmin(d, r), W = half * half * (f0 + f1), Q = half * half * half * (f0 + 2.0 * f1 + f2);
     w.W -= fades * (W + 0.5 * (d * d - end * end)), w.Q -= fades * (Q + (d * d * d - end * end * end) / 3.0);
     w.by_depth *= 1.0 - faded, w.by_its_square *= 1.0 - faded;

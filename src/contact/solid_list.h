@@ -4,7 +4,7 @@
 // contact: one overlap, one normal, one point, one tangential spring (narrow_phase.h). i is the body with the lower number; half-spaces and mesh walls are always j.
 //
 // What a candidate remembers is a record of its own, which a checkpoint holds as it is. Besides the spring it has what warm starts need, so that a restart gives the
-// same bits: a record lives from the step in which the bounding volumes of the two parts begin to overlap to the one in which they no longer do. Geometry decides that, never the
+// same bits: a record lives from the step in which the bounding volumes of the two parts begin to overlap (at pieces of walls: come near, wall_groups.c) to the one in which they no longer do. Geometry decides that, never the
 // list, so lists of any skin and order in memory give the same records.
 #ifndef PLS_CONTACT_SOLID_LIST_H
 #define PLS_CONTACT_SOLID_LIST_H

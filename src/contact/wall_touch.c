@@ -78,11 +78,8 @@ bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *se
     if (kind == PIECES) origin = pls_posed_world(a, a->shape->mass.centre);
     const pls_vec3 start = origin;
     const double margin = kind == PIECES ? 0.0 : a->shape->margin * a->scale;
-    pls_prism prism = {.planes = 0};
-    if (kind == LINE)
-        prism.plane[0] = (pls_half_space){pls_vec(0.0, 0.0, 0.0), 0.0}; // lines go by the distance from the facet itself
-    else
-        prism = pls_facet_prism(facet, seams, origin, front, margin);
+    pls_prism prism = {.planes = 0}; // lines go by the distance from the facet itself
+    if (kind != LINE) prism = pls_facet_prism(facet, seams, origin, front, margin);
     pls_overlap_integrals P;
     double deep = depth->delta;
     bool any = false;
