@@ -343,34 +343,55 @@ static void move_on_rim(side *s, pls_vec3 e, double off)
     if (fabs(across) > 0.1) s->on = pls_add(s->on, pls_scale(tangent, off / across));
 }
 
+/// Where a slope changes sign, between two places: by chords, of which the end that stays counts half (the Illinois algorithm).
+typedef struct
+{
+    double low, high, slope_low, slope_high;
+    int last; // the end that moved last: -1 the low one, 1 the high one
+} bracket;
+
+static double chord(const bracket *b) { return (b->low * b->slope_high - b->high * b->slope_low) / (b->slope_high - b->slope_low); }
+
+static void narrow(bracket *b, double at, double slope)
+{
+    if (slope < 0.0)
+    {
+        b->low = at, b->slope_low = slope;
+        if (b->last < 0) b->slope_high *= 0.5;
+        b->last = -1;
+    }
+    else
+    {
+        b->high = at, b->slope_high = slope;
+        if (b->last > 0) b->slope_low *= 0.5;
+        b->last = 1;
+    }
+}
+
 /// Where Newton's steps go wild: along an edge that all but lies in a cylinder's end the point on the rim runs by its radius within that small angle. Where the slope changes sign is the place.
 static bool find_turn(side *a, side *b, const limits *l, pls_vec3 *n, double *F, pls_vec3 *gap, int *iterations)
 {
     const double size = fmin(a->p->size, b->p->size);
     const pls_vec3 along = l->along[0], n0 = *n;
     pls_vec3 apart;
-    double low = 0.0, high = 0.0, slope_low = slope_at(a, b, along, n0, 0.0, n, &apart), slope_high = slope_low, slope = slope_low;
-    for (double reach = least_turn; slope_low > 0.0 && reach < longest; reach *= 4.0)
-        high = low, slope_high = slope_low, low = -reach, slope_low = slope_at(a, b, along, n0, low, n, &apart), ++*iterations;
-    for (double reach = least_turn; slope_high < 0.0 && reach < longest; reach *= 4.0)
-        low = high, slope_low = slope_high, high = reach, slope_high = slope_at(a, b, along, n0, high, n, &apart), ++*iterations;
-    if (!(slope_low <= 0.0 && slope_high >= 0.0)) return false;
-    for (int k = 0, last = 0; k < MOST_CHORDS && fabs(slope) >= enough * size && high - low > 1e-16; ++k)
+    double slope = slope_at(a, b, along, n0, 0.0, n, &apart);
+    bracket turn = {.slope_low = slope, .slope_high = slope};
+    for (double reach = least_turn; turn.slope_low > 0.0 && reach < longest; reach *= 4.0)
     {
-        const double angle = (low * slope_high - high * slope_low) / (slope_high - slope_low);
+        turn.high = turn.low, turn.slope_high = turn.slope_low;
+        turn.low = -reach, turn.slope_low = slope_at(a, b, along, n0, turn.low, n, &apart), ++*iterations;
+    }
+    for (double reach = least_turn; turn.slope_high < 0.0 && reach < longest; reach *= 4.0)
+    {
+        turn.low = turn.high, turn.slope_low = turn.slope_high;
+        turn.high = reach, turn.slope_high = slope_at(a, b, along, n0, turn.high, n, &apart), ++*iterations;
+    }
+    if (!(turn.slope_low <= 0.0 && turn.slope_high >= 0.0)) return false;
+    for (int k = 0; k < MOST_CHORDS && fabs(slope) >= enough * size && turn.high - turn.low > 1e-16; ++k)
+    {
+        const double angle = chord(&turn);
         slope = slope_at(a, b, along, n0, angle, n, &apart), ++*iterations;
-        if (slope < 0.0)
-        {
-            low = angle, slope_low = slope;
-            if (last < 0) slope_high *= 0.5;
-            last = -1;
-        }
-        else
-        {
-            high = angle, slope_high = slope;
-            if (last > 0) slope_low *= 0.5;
-            last = 1;
-        }
+        narrow(&turn, angle, slope);
     }
     *F = pls_dot(apart, *n);
     if (a->cylinder)
@@ -451,7 +472,6 @@ static bool is_sharp(const side *s) { return s->kind == EDGE || (s->kind == CORN
 static enum answer by_distance(side *round, side *sharp, pls_vec3 *n, pls_depth *out)
 {
     const double tiny = 1e-16 * (sharp->high - sharp->low);
-    double low = sharp->low, high = sharp->high, slope_low = 0.0, slope_high = 0.0;
     look(sharp, *n);
     double margin = sharp->margin;
     if (sharp->cylinder) // its axis, thickened
@@ -462,34 +482,23 @@ static enum answer by_distance(side *round, side *sharp, pls_vec3 *n, pls_depth 
     pls_vec3 x = sharp->point, g = pls_posed_gradient(round->p, x);
     if (sharp->kind == EDGE)
     {
-        slope_low = pls_dot(pls_posed_gradient(round->p, pls_add(sharp->point, pls_scale(sharp->edge, low))), sharp->edge);
-        slope_high = pls_dot(pls_posed_gradient(round->p, pls_add(sharp->point, pls_scale(sharp->edge, high))), sharp->edge);
-        if (slope_low >= 0.0 || slope_high <= 0.0)
+        bracket along = {.low = sharp->low, .high = sharp->high};
+        along.slope_low = pls_dot(pls_posed_gradient(round->p, pls_add(sharp->point, pls_scale(sharp->edge, along.low))), sharp->edge);
+        along.slope_high = pls_dot(pls_posed_gradient(round->p, pls_add(sharp->point, pls_scale(sharp->edge, along.high))), sharp->edge);
+        if (along.slope_low >= 0.0 || along.slope_high <= 0.0)
         {
-            to_end(sharp, slope_high <= 0.0);
+            to_end(sharp, along.slope_high <= 0.0);
             return CHANGED;
         }
-        // Chords, of which the end that stays counts half (the Illinois algorithm).
-        for (int k = 0, last = 0; k < MOST_CHORDS && high - low > tiny; ++k)
+        for (int k = 0; k < MOST_CHORDS && along.high - along.low > tiny; ++k)
         {
-            const double t = (low * slope_high - high * slope_low) / (slope_high - slope_low);
+            const double t = chord(&along);
             x = pls_add(sharp->point, pls_scale(sharp->edge, t));
             g = pls_posed_gradient(round->p, x);
             const double slope = pls_dot(g, sharp->edge);
             out->iterations += 1;
             if (fabs(slope) < sloping) break;
-            if (slope < 0.0)
-            {
-                low = t, slope_low = slope;
-                if (last < 0) slope_high *= 0.5;
-                last = -1;
-            }
-            else
-            {
-                high = t, slope_high = slope;
-                if (last > 0) slope_low *= 0.5;
-                last = 1;
-            }
+            narrow(&along, t, slope);
         }
         g = pls_unit(pls_sub(g, pls_scale(sharp->edge, pls_dot(g, sharp->edge))));
     }
