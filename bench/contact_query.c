@@ -70,7 +70,7 @@ static const entry entries[] = {
     {"rectangle", &pls_box_shape, {0.5, 0.35, 1.0, 0.0}, 0, 2},
     {"rounded-rectangle", &pls_box_shape, {0.5, 0.35, 1.0, 0.1}, 0, 2},
     {"stadium", &pls_capsule_shape, {0.25, 0.5}, 0, 2},
-    {"ellipse", &pls_ellipse_shape, {0.5, 0.35}, 0, 2},
+    {"ellipse", &pls_ellipse_shape, {0.5, 0.35, 1.0}, 0, 2},
     {"superellipse", &pls_superquadric_shape, {0.5, 0.4, 1.0, 1.0, 0.6}, 0, 2},
     {"polygon", &pls_polygon_shape, {0.0}, 8, 2},
     {"half-plane", &pls_half_plane_shape, {0.0}, 0, 2},
