@@ -14,6 +14,7 @@
 #ifndef PARTICLS_WORLD_H
 #define PARTICLS_WORLD_H
 
+#include <particls/bond.h>
 #include <particls/contact.h>
 #include <particls/field.h>
 #include <particls/force.h>

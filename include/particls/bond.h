@@ -1,0 +1,119 @@
+/// @file bond.h
+/// Bonds: material points of a continuum that act on all points within a horizon (peridynamics). See docs/theory.md and docs/extending.md.
+#ifndef PARTICLS_BOND_H
+#define PARTICLS_BOND_H
+
+#include <particls/law.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct pls_world;
+
+/// A set of bonds in a world. 0: none.
+typedef struct pls_bonds_id
+{
+    uint16_t index1;
+} pls_bonds_id;
+
+/// What a plane stands for in 2D.
+typedef enum pls_plane { PLS_PLANE_STRAIN, PLS_PLANE_STRESS } pls_plane;
+
+/// How bonds of a family count, as a function of their reference length xi (of the horizon delta).
+typedef enum pls_influence {
+    PLS_INFLUENCE_ONE,      ///< 1
+    PLS_INFLUENCE_INVERSE,  ///< delta / xi
+    PLS_INFLUENCE_CONICAL,  ///< 1 - xi / delta
+    PLS_INFLUENCE_GAUSSIAN, ///< exp(-xi^2 / delta^2), P1 eq. 33
+    PLS_INFLUENCE_FUNCTION  ///< the user's own
+} pls_influence;
+
+/// Families near a surface lack bonds; what makes up for it.
+typedef enum pls_correction {
+    PLS_CORRECTION_NONE,
+    PLS_CORRECTION_VOLUME, ///< each bond times 2 V0 / (V_i + V_j), V the volume of a family and V0 that of the fullest one (Le and Bobaru 2018)
+    PLS_CORRECTION_ENERGY ///< each point's moduli so that a uniform dilation stores what it stores inside
+} pls_correction;
+
+/// Where a law is asked: what its constants may depend on.
+typedef struct pls_bond_setting
+{
+    int dimension;                ///< 2 or 3
+    pls_plane plane;              ///< in 2D
+    pls_material_values material; ///< of the points; E and nu are NaN where not given
+} pls_bond_setting;
+
+/// Coefficients of a linear law: a bond of reference length xi and extension e in a family of weighted volume m and dilatation theta carries the force density per volume
+///     t = (w / m) (dilation theta xi + extension e)        (Silling et al. 2007, THEORY 5)
+/// with theta = (d / m) sum w xi e V, d = 3 (2 in 2D).
+typedef struct pls_bond_coefficients
+{
+    double dilation;  ///< [Pa]
+    double extension; ///< [Pa]
+} pls_bond_coefficients;
+
+typedef struct pls_bond_ops
+{
+    uint32_t api_version; ///< PLS_API_VERSION
+    const char *name;     ///< the scene's `law:` value
+    const char *meaning;  ///< one line for the docs
+    const pls_parameter *parameters;
+    bool pairwise; ///< a bond knows itself alone: m is that of the fullest family of the set, whatever bonds its points have
+    /// Coefficients of a linear law. INVALID_ARGUMENT names a value the law cannot have (nu of bond-based laws).
+    pls_status (*linear)(const double *values, const pls_bond_setting *setting, pls_bond_coefficients *out);
+} pls_bond_ops;
+
+/// A set of bonds. Copy `pls_default_bonds_def()` and change what you need.
+typedef struct pls_bonds_def
+{
+    char name[PLS_NAME_SIZE];
+    const pls_bond_ops *ops;   ///< required; must outlive the world
+    const double *values;      ///< its parameters in order of its table; null: all defaults
+    const pls_group_id *group; ///< bodies of these groups are its points; null: all bodies that can move or are driven
+    size_t group_count;
+    double horizon; ///< [m], required: bonds join all points no further apart now
+    double
+        spacing; ///< of points [m], over which a bond's volume fades at the horizon; 0: from the volumes of its two points; < 0: volumes do not fade
+    pls_influence influence;
+    double (*weight)(void *context, double xi); ///< for PLS_INFLUENCE_FUNCTION: >= 0
+    void *context;                              ///< of `weight`; used while the set is made
+    pls_correction correction;
+    pls_plane plane;
+    double critical_stretch; ///< bonds longer by more than this part break and never heal; infinite (default): none do
+    uint32_t cookie;
+} pls_bonds_def;
+
+pls_bonds_def pls_default_bonds_def(void);
+
+/// Join bodies as they lie now. Each is a point of volume mass / density of its material. While a bond holds, its two bodies do not touch.
+/// INVALID_ARGUMENT: two points in one place, a point without bonds, moduli the law cannot have, a box with less than two horizons between periodic faces.
+pls_status pls_world_add_bonds(struct pls_world *world, const pls_bonds_def *def, pls_bonds_id *id);
+/// A null id when there is none of that name.
+pls_bonds_id pls_world_find_bonds(const struct pls_world *world, const char *name);
+
+bool pls_world_has_bonds(const struct pls_world *world);
+
+/// Figures of a set.
+typedef struct pls_bonds_figures
+{
+    size_t points;
+    size_t bonds;         ///< of either direction: each joins two points and counts twice
+    size_t broken;        ///< likewise
+    size_t bytes;         ///< held
+    double energy;        ///< stored now [J]
+    double energy_broken; ///< that bonds held when they broke [J]
+} pls_bonds_figures;
+pls_status pls_world_bonds_figures(const struct pls_world *world, pls_bonds_id id, pls_bonds_figures *figures);
+/// Part of its bonds that a body has lost in a set: 0 whole, 1 none left; NaN when the body is no point of it.
+double pls_world_bonds_damage(const struct pls_world *world, pls_bonds_id id, pls_body_id body);
+/// Break the bonds of a set that cross a triangle (2D: a segment a-b) now: a crack there from the start. Returns in `cut` how many, of either direction.
+pls_status pls_world_cut_bonds(struct pls_world *world, pls_bonds_id id, pls_vec3 a, pls_vec3 b, pls_vec3 c, size_t *cut);
+
+/// Built-in bond laws; the list ends with null.
+const pls_bond_ops *const *pls_builtin_bonds(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

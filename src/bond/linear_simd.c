@@ -1,0 +1,88 @@
+// linear_simd.c -- the two loops over families, eight bonds at a time (bond_set.h says what they compute).
+//
+// Rows of partners are loaded whole, 32 bytes each, and transposed; points lie along a space-filling curve, so that most rows are in the near caches. Extensions are computed in both loops:
+// storing them would cost more than the root. Eight sums run side by side on any width and are added up in one order.
+
+#include "bond/bond_set.h"
+
+enum { PARTS = PLS_BOND_VECTOR / PLS_W };
+
+typedef float floats __attribute__((vector_size(4 * PLS_W), aligned(4)));
+
+/// A vector of bonds: the partners' rows less the point's, and how long they are.
+typedef struct bonds
+{
+    pls_vd d[3], a, length, xi;
+} bonds;
+
+static inline __attribute__((always_inline)) bonds load(const pls_bond_set *set, size_t slot, const pls_vd x[3])
+{
+    const uint32_t *partner = set->family.partner + slot;
+    pls_v4 row[PLS_W];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < PLS_W; ++lane) row[lane] = pls_v4_load(set->row[partner[lane]]);
+    pls_vd column[4];
+    pls_columns4(row, column);
+    bonds b = {.a = column[3], .xi = pls_vd_load(set->family.length + slot)};
+    for (int c = 0; c < 3; ++c) b.d[c] = column[c] - x[c];
+    b.length = pls_vd_sqrt(b.d[0] * b.d[0] + b.d[1] * b.d[1] + b.d[2] * b.d[2]);
+    return b;
+}
+
+/// Of the eight side by side, in an order that no width changes.
+static inline __attribute__((always_inline)) double total(const pls_vd part[PARTS])
+{
+    double lane[PLS_BOND_VECTOR] __attribute__((aligned(64)));
+    for (int k = 0; k < PARTS; ++k) pls_vd_store(lane + k * PLS_W, part[k]);
+    return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+static inline __attribute__((always_inline)) void place_of(const pls_bond_set *set, size_t point, pls_vd x[3])
+{
+    for (int c = 0; c < 3; ++c) x[c] = pls_vd_set(set->row[point][c]);
+}
+
+void PLS_SIMD(pls_bond_dilate)(pls_bond_set *set, size_t first, size_t last)
+{
+    const uint32_t *start = set->family.start;
+    for (size_t p = first; p < last; ++p)
+    {
+        pls_vd x[3], sum[PARTS] = {0};
+        place_of(set, p, x);
+        for (size_t slot = (size_t)start[p] * PLS_BOND_VECTOR; slot < (size_t)start[p + 1] * PLS_BOND_VECTOR; slot += PLS_BOND_VECTOR)
+#pragma GCC unroll 4
+            for (size_t k = 0; k < PARTS; ++k)
+            {
+                const bonds b = load(set, slot + k * PLS_W, x);
+                sum[k] = sum[k] + pls_vd_load(set->weight + slot + k * PLS_W) * (b.length - b.xi);
+            }
+        set->row[p][3] = set->dilation[p] * total(sum);
+    }
+}
+
+bool PLS_SIMD(pls_bond_act)(pls_bond_set *set, size_t first, size_t last)
+{
+    const uint32_t *start = set->family.start;
+    const double stretch = set->stretch, twice = set->twice;
+    bool any = false;
+    for (size_t p = first; p < last; ++p)
+    {
+        pls_vd x[3], sum[3][PARTS] = {0}, a = pls_vd_set(set->row[p][3]);
+        unsigned overlong = 0;
+        place_of(set, p, x);
+        for (size_t slot = (size_t)start[p] * PLS_BOND_VECTOR; slot < (size_t)start[p + 1] * PLS_BOND_VECTOR; slot += PLS_BOND_VECTOR)
+#pragma GCC unroll 4
+            for (size_t k = 0; k < PARTS; ++k)
+            {
+                const size_t at = slot + k * PLS_W;
+                const bonds b = load(set, at, x);
+                const pls_vd e = b.length - b.xi, both = twice + __builtin_convertvector(*(const floats *)(set->residual + at), pls_vd);
+                const pls_vd factor = pls_vd_load(set->weight + at) * ((a + b.a) * b.xi + both * e) / (b.xi * b.length);
+                overlong |= pls_vd_less(stretch * b.xi, e);
+                for (int c = 0; c < 3; ++c) sum[c][k] = sum[c][k] + factor * b.d[c];
+            }
+        for (int c = 0; c < 3; ++c) set->force[p][c] = total(sum[c]);
+        if (overlong) set->overlong[p] = 1, any = true;
+    }
+    return any;
+}
