@@ -81,6 +81,8 @@ typedef struct pls_bonds_def
     pls_correction correction;
     pls_plane plane;
     double critical_stretch; ///< bonds longer by more than this part break and never heal; infinite (default): none do
+    double
+        fracture_energy; ///< G [J/m^2]: the critical stretch at which a plane that is torn apart takes so much (Silling and Askari 2005); NaN (default): not given
     uint32_t cookie;
 } pls_bonds_def;
 

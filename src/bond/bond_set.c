@@ -152,7 +152,7 @@ static pls_status make(pls_bond_set *set, const pls_bond_plan *plan, const pls_d
 
 pls_status pls_bond_set_make(pls_bond_set *set, const pls_bond_plan *plan, pls_bond_point *point, size_t count, const pls_domain *domain)
 {
-    *set = (pls_bond_set){.horizon = plan->def->horizon, .stretch = plan->def->critical_stretch};
+    *set = (pls_bond_set){.horizon = plan->def->horizon, .stretch = plan->stretch};
     memcpy(set->name, plan->def->name, sizeof set->name);
     pls_status status = pls_families_make(&set->family, point, count, plan->def->horizon, domain);
     if (status == PLS_OK) status = make(set, plan, domain);

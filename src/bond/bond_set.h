@@ -57,6 +57,7 @@ typedef struct pls_bond_plan
     const pls_bonds_def *def;
     const pls_bond_coefficients *law; ///< of every material
     const uint16_t *material;         ///< of every body, by number
+    double stretch;                   ///< critical
 } pls_bond_plan;
 
 /// `point` belongs to the set from here on, also when this fails (pls_families_make).

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "bond/bond_set.h"
+#include "bond/influence.h"
 #include "math/lanczos.h"
 
 #include <stdio.h>
@@ -17,7 +18,7 @@ static const double margin = 1.03; ///< Lanczos values come from below
 
 pls_bonds_def pls_default_bonds_def(void)
 {
-    return (pls_bonds_def){.influence = PLS_INFLUENCE_INVERSE, .critical_stretch = INFINITY, .cookie = COOKIE};
+    return (pls_bonds_def){.influence = PLS_INFLUENCE_INVERSE, .critical_stretch = INFINITY, .fracture_energy = NAN, .cookie = COOKIE};
 }
 
 // ---- making --------------------------------------------------------------------------------------------------------------------------------------------
@@ -35,6 +36,11 @@ static pls_status check_def(const pls_world *world, const pls_bonds_def *def)
     if (!(def->critical_stretch > 0.0))
         return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the critical stretch is %g; it must be positive", def->name,
                         def->critical_stretch);
+    if (!isnan(def->fracture_energy) && !(def->fracture_energy > 0.0 && isfinite(def->fracture_energy)))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the fracture energy is %g J/m^2; it must be positive", def->name,
+                        def->fracture_energy);
+    if (!isnan(def->fracture_energy) && isfinite(def->critical_stretch))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': give the critical stretch or the fracture energy, not both", def->name);
     if (def->influence == PLS_INFLUENCE_FUNCTION && !def->weight)
         return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the influence is a function, but none is given", def->name);
     for (size_t g = 0; g < def->group_count; ++g)
@@ -102,6 +108,27 @@ static pls_status ask_law(const pls_world *world, const pls_bonds_def *def, cons
     return PLS_OK;
 }
 
+/// The critical stretch that the fracture energy asks for, which must be that of all materials.
+static pls_status find_stretch(const pls_world *world, const pls_bonds_def *def, const pls_bond_coefficients *law, double *stretch)
+{
+    const int d = world->def.dimension;
+    *stretch = def->critical_stretch;
+    if (isnan(def->fracture_energy)) return PLS_OK;
+    for (size_t m = 0; m < world->laws.material_count; ++m)
+    {
+        if (law[m].extension == 0.0) continue;                                               // no points of it
+        const double bulk = (d * law[m].dilation + law[m].extension) / (d == 3 ? 9.0 : 4.0); // what a uniform dilation meets
+        const double own = pls_critical_stretch(def, d, bulk, def->fracture_energy);
+        if (isfinite(*stretch) && !(fabs(own - *stretch) <= 1e-9 * own))
+            return pls_fail(PLS_INVALID_ARGUMENT,
+                            "bonds '%s': one fracture energy means other critical stretches in other materials (%g and %g); give "
+                            "critical_stretch, or sets of their own",
+                            def->name, *stretch, own);
+        *stretch = own;
+    }
+    return PLS_OK;
+}
+
 static pls_status make(pls_world *world, const pls_bonds_def *def, pls_bond_set *set)
 {
     pls_bond_point *point = NULL;
@@ -113,7 +140,8 @@ static pls_status make(pls_world *world, const pls_bonds_def *def, pls_bond_set 
     if (status == PLS_OK) status = pls_allocate(&law, world->laws.material_count, sizeof *law, "points of bonds");
     if (status == PLS_OK) status = collect_points(world, def, point, material, &count);
     if (status == PLS_OK) status = ask_law(world, def, point, count, material, law);
-    const pls_bond_plan plan = {.def = def, .law = law, .material = material};
+    pls_bond_plan plan = {.def = def, .law = law, .material = material};
+    if (status == PLS_OK) status = find_stretch(world, def, law, &plan.stretch);
     if (status == PLS_OK)
     {
         status = pls_bond_set_make(set, &plan, point, count, &world->domain);
