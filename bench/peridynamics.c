@@ -15,7 +15,7 @@
 static const double spacing = 0.008;                          ///< [m]
 static const double horizon = 3.015;                          ///< spacings
 static const double density = 1.0;                            ///< [kg/m^3]
-static const double bulk_modulus = 10.0, shear_modulus = 6.0; ///< [Pa]
+static const double bulk_modulus = 10.0, shear_modulus = 4.0; ///< [Pa]
 static const double speed = 0.01;                             ///< of the ends [m/s]
 static const double time_step = 1e-4;                         ///< [s]
 
@@ -44,7 +44,7 @@ static bool read_options(int argc, char **argv, options *o)
                     "peridynamics: cannot use '%s%s%s'\nusage: peridynamics [--side N] [--steps N] [--law NAME]\n"
                     "  --side N    points along each edge of the cube (40)\n"
                     "  --steps N   steps that are timed (100)\n"
-                    "  --law NAME  linear_solid or bond_based\n",
+                    "  --law NAME  linear_solid, bond_based or beam (of nearest neighbours)\n",
                     argv[k], k + 1 < argc ? " " : "", k + 1 < argc ? argv[k + 1] : "");
             return false;
         }
@@ -107,8 +107,10 @@ static pls_status build(const options *o, pls_world **world)
     const pls_bond_ops *const *ops = pls_builtin_bonds();
     while (*ops && strcmp((*ops)->name, o->law) != 0) ++ops;
     if (!*ops) return pls_fail(PLS_NOT_FOUND, "there is no bond law '%s'", o->law);
+    const double section[] = {0.4 * spacing, 0.0, 0.0}; // a beam's radius and strengths
     bonds.ops = *ops;
-    bonds.horizon = horizon * spacing;
+    bonds.horizon = ((*ops)->pair ? 1.1 : horizon) * spacing;
+    bonds.values = (*ops)->pair ? section : NULL;
     bonds.spacing = spacing;
     return pls_world_add_bonds(*world, &bonds, &id);
 }

@@ -1,5 +1,5 @@
 /// @file bond.h
-/// Bonds: material points of a continuum that act on all points within a horizon (peridynamics). See docs/theory.md and docs/extending.md.
+/// Bonds between bodies: material points of a continuum that act on all points within a horizon (peridynamics), and beams that join bodies and turn with them. See docs/theory.md.
 #ifndef PARTICLS_BOND_H
 #define PARTICLS_BOND_H
 
@@ -32,8 +32,8 @@ typedef enum pls_influence {
 /// Families near a surface lack bonds; what makes up for it.
 typedef enum pls_correction {
     PLS_CORRECTION_NONE,
-    PLS_CORRECTION_VOLUME, ///< each bond times 2 V0 / (V_i + V_j), V the volume of a family and V0 that of the fullest one (Le and Bobaru 2018)
-    PLS_CORRECTION_ENERGY ///< each point's moduli so that a uniform dilation stores what it stores inside
+    PLS_CORRECTION_VOLUME, ///< the stiffness of each bond times 2 V0 / (V_i + V_j), V the volume of a family and V0 that of the fullest one (Le and Bobaru 2018)
+    PLS_CORRECTION_ENERGY ///< each bond by what its two families make of stretches along the axes, compared with the fullest one (Madenci and Oterkus 2014)
 } pls_correction;
 
 /// Where a law is asked: what its constants may depend on.
@@ -53,6 +53,37 @@ typedef struct pls_bond_coefficients
     double extension; ///< [Pa]
 } pls_bond_coefficients;
 
+/// A batch of bonds that turn with the two bodies they join, each seen from one of them, its own body; the same bond is seen from the other one elsewhere. All arrays hold `count` values, a
+/// multiple of 8, at most PLS_LAW_BATCH, are 64-byte aligned and do not overlap; lanes that fill up hold harmless values, so that one plain loop without branches is right. A law that gives opposite forces
+/// and torques that balance for the two views of a bond keeps both momenta.
+typedef struct pls_pair_batch
+{
+    size_t count;
+    const double *constants; ///< what `prepare` left
+    const double *reference; ///< length of the bond when it was made [m]
+    const double *length;    ///< now [m]
+    const double *unit[3];   ///< from the own body to the other
+    const double
+        *along[2][3]; ///< of the own and the other body: a unit vector fixed in it that pointed to its partner when the bond was made
+    const double *across[2][3]; ///< likewise: a unit vector across the bond, which both bodies had alike
+    double *force[3];           ///< out: on the own body [N]
+    double *torque[3];          ///< out: on the own body, about its centre [N m]
+    double *energy;             ///< out: stored in the bond [J]
+    double *load;               ///< out: part of its strength that the bond carries; from 1 on it breaks. The same for both views
+} pls_pair_batch;
+
+/// Most constants a pair law may prepare.
+#define PLS_BOND_MAX_CONSTANTS 16
+
+/// Stiffness of a bond of one length against small motions, for the stable step: as of an Euler-Bernoulli beam.
+typedef struct pls_pair_stiffness
+{
+    double axial;   ///< EA/l [N/m]
+    double bending; ///< EI/l [N m]
+    double torsion; ///< GJ/l [N m]
+} pls_pair_stiffness;
+
+/// A bond law: `linear` or `pair`, one of them, and what goes with it.
 typedef struct pls_bond_ops
 {
     uint32_t api_version; ///< PLS_API_VERSION
@@ -62,6 +93,13 @@ typedef struct pls_bond_ops
     bool pairwise; ///< a bond knows itself alone: m is that of the fullest family of the set, whatever bonds its points have
     /// Coefficients of a linear law. INVALID_ARGUMENT names a value the law cannot have (nu of bond-based laws).
     pls_status (*linear)(const double *values, const pls_bond_setting *setting, pls_bond_coefficients *out);
+
+    /// Of a pair law: check what the table cannot and turn parameters and material into constants.
+    pls_status (*prepare)(const double *values, const pls_bond_setting *setting, double constants[PLS_BOND_MAX_CONSTANTS]);
+    /// The law itself.
+    void (*pair)(const pls_pair_batch *batch);
+    /// Stiffness of a bond of this length [m].
+    void (*stiffness)(const double *constants, double length, pls_pair_stiffness *out);
 } pls_bond_ops;
 
 /// A set of bonds. Copy `pls_default_bonds_def()` and change what you need.
@@ -76,7 +114,7 @@ typedef struct pls_bonds_def
     double
         spacing; ///< of points [m], over which a bond's volume fades at the horizon; 0: from the volumes of its two points; < 0: volumes do not fade
     pls_influence influence;
-    double (*weight)(void *context, double xi); ///< for PLS_INFLUENCE_FUNCTION: >= 0
+    double (*weight)(void *context, double xi); ///< for PLS_INFLUENCE_FUNCTION: >= 0; called from several threads at once
     void *context;                              ///< of `weight`; used while the set is made
     pls_correction correction;
     pls_plane plane;
@@ -88,7 +126,8 @@ typedef struct pls_bonds_def
 
 pls_bonds_def pls_default_bonds_def(void);
 
-/// Join bodies as they lie now. Each is a point of volume mass / density of its material. While a bond holds, its two bodies do not touch.
+/// Join bodies as they lie now. For laws of peridynamics each is a point of volume mass / density of its material. While a bond holds, its two bodies do not touch.
+/// Moduli are those that materials have now; where these change later, bonds keep theirs.
 /// INVALID_ARGUMENT: two points in one place, a point without bonds, moduli the law cannot have, a box with less than two horizons between periodic faces.
 pls_status pls_world_add_bonds(struct pls_world *world, const pls_bonds_def *def, pls_bonds_id *id);
 /// A null id when there is none of that name.

@@ -4,6 +4,6 @@
 
 #include <particls/bond.h>
 
-extern const pls_bond_ops pls_linear_solid_bonds, pls_bond_based_bonds;
+extern const pls_bond_ops pls_linear_solid_bonds, pls_bond_based_bonds, pls_beam_bonds;
 
 #endif

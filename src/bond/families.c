@@ -14,7 +14,10 @@
 static const double on_the_horizon = 1e-9; ///< of the horizon: lattices have partners right there, and rounding must not choose among them
 static const double one_place = 1e-6;      ///< of the horizon: points nearer than this are two in one place
 
-enum { SEARCH_BLOCK = 64 };
+enum {
+    SEARCH_BLOCK = 64,
+    MOST_BOXES = 500 ///< periodic boxes between two points, which keys of ghosts have room for; those further apart are no partners
+};
 
 /// Points sorted into cells.
 typedef struct search
@@ -176,7 +179,7 @@ static size_t family_of(const search *s, size_t p, partner *out, double *nearest
                         double d = s->f->point[q].x[a] - s->f->point[p].x[a];
                         if (s->domain->periodic[a])
                         {
-                            one.shift[a] = (int16_t)-rint(d / s->domain->edge[a]);
+                            one.shift[a] = (int16_t)-fmax(-MOST_BOXES, fmin(rint(d / s->domain->edge[a]), MOST_BOXES));
                             d += one.shift[a] * s->domain->edge[a];
                         }
                         square += d * d;

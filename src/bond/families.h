@@ -23,6 +23,7 @@ typedef struct pls_bond_point
     double volume;   ///< [m^3], in 2D with the thickness
     double spacing;  ///< size of its cell, over which its volume fades at the horizon [m]; 0: does not fade
     uint32_t number; ///< of the body
+    uint32_t generation;
 } pls_bond_point;
 
 /// An image of a point beyond a periodic face, which has points near it as partners.

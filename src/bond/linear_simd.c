@@ -4,6 +4,7 @@
 // storing them would cost more than the root. Eight sums run side by side on any width and are added up in one order.
 
 #include "bond/bond_set.h"
+#include "bond/lanes.h"
 
 enum { PARTS = PLS_BOND_VECTOR / PLS_W };
 
@@ -29,14 +30,6 @@ static inline __attribute__((always_inline)) bonds load(const pls_bond_set *set,
     return b;
 }
 
-/// Of the eight side by side, in an order that no width changes.
-static inline __attribute__((always_inline)) double total(const pls_vd part[PARTS])
-{
-    double lane[PLS_BOND_VECTOR] __attribute__((aligned(64)));
-    for (int k = 0; k < PARTS; ++k) pls_vd_store(lane + k * PLS_W, part[k]);
-    return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-}
-
 static inline __attribute__((always_inline)) void place_of(const pls_bond_set *set, size_t point, pls_vd x[3])
 {
     for (int c = 0; c < 3; ++c) x[c] = pls_vd_set(set->row[point][c]);
@@ -56,7 +49,7 @@ void PLS_SIMD(pls_bond_dilate)(pls_bond_set *set, size_t first, size_t last)
                 const bonds b = load(set, slot + k * PLS_W, x);
                 sum[k] = sum[k] + pls_vd_load(set->weight + slot + k * PLS_W) * (b.length - b.xi);
             }
-        set->row[p][3] = set->dilation[p] * total(sum);
+        set->spread[p] = set->dilation[p] * pls_lanes_sum(sum); // rows are being read by other threads
     }
 }
 
@@ -76,12 +69,12 @@ bool PLS_SIMD(pls_bond_act)(pls_bond_set *set, size_t first, size_t last)
             {
                 const size_t at = slot + k * PLS_W;
                 const bonds b = load(set, at, x);
-                const pls_vd e = b.length - b.xi, both = twice + __builtin_convertvector(*(const floats *)(set->residual + at), pls_vd);
-                const pls_vd factor = pls_vd_load(set->weight + at) * ((a + b.a) * b.xi + both * e) / (b.xi * b.length);
+                const pls_vd e = b.length - b.xi, share = __builtin_convertvector(*(const floats *)(set->share + at), pls_vd);
+                const pls_vd factor = pls_vd_load(set->weight + at) * ((a + b.a) * b.xi + (twice * e) * share) / (b.xi * b.length);
                 overlong |= pls_vd_less(stretch * b.xi, e);
                 for (int c = 0; c < 3; ++c) sum[c][k] = sum[c][k] + factor * b.d[c];
             }
-        for (int c = 0; c < 3; ++c) set->force[p][c] = total(sum[c]);
+        for (int c = 0; c < 3; ++c) set->force[p][c] = pls_lanes_sum(sum[c]);
         if (overlong) set->overlong[p] = 1, any = true;
     }
     return any;

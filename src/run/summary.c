@@ -110,6 +110,8 @@ static pls_status add_figures(pls_text *json, pls_run *run, pls_status outcome)
     PLS_TRY(add_named_number(json, "shear", f.energy_shear, ", "));
     PLS_TRY(add_named_number(json, "potential", f.energy_potential, ", "));
     PLS_TRY(add_named_number(json, "damped", f.energy_damped, ", "));
+    PLS_TRY(add_named_number(json, "bonds", f.energy_bonds, ", "));
+    PLS_TRY(add_named_number(json, "broken", f.energy_broken, ", "));
     PLS_TRY(add_named_number(json, "slid", f.energy_slid, "},\n"));
     PLS_TRY(add_named_vector(json, "momentum", f.momentum));
     return add_named_vector(json, "angular_momentum", f.angular_momentum);

@@ -31,12 +31,13 @@ static pls_status take_influence(const pls_builder *b, const pls_node *node, inf
                  {"one", PLS_INFLUENCE_ONE},
                  {"conical", PLS_INFLUENCE_CONICAL},
                  {"gaussian", PLS_INFLUENCE_GAUSSIAN}};
-    for (size_t k = 0; !node->numeric && !node->formula && k < sizeof known / sizeof *known; ++k)
+    for (size_t k = 0; node && !node->numeric && !node->formula && k < sizeof known / sizeof *known; ++k)
         if (strcmp(known[k].word, node->text) == 0)
         {
             def->influence = known[k].influence;
             return PLS_OK;
         }
+    if (!node) return PLS_OK;
     char number[32];
     const char *names[PLS_EXPRESSION_VARIABLES], *text = node->numeric ? pls_format_double(number, node->number) : node->text;
     pls_symbols symbols;
@@ -51,24 +52,28 @@ static pls_status take_influence(const pls_builder *b, const pls_node *node, inf
 
 static void take_spacing(const pls_node *node, pls_bonds_def *def)
 {
+    if (!node) return;
     if (node->numeric)
         def->spacing = node->number;
     else
         def->spacing = strcmp(node->text, "none") == 0 ? -1.0 : 0.0;
 }
 
-/// One convex polygon, as a fan of triangles; in 2D a line through the points.
-static pls_status cut(const pls_builder *b, pls_bonds_id id, const pls_vec3 *point, size_t count)
+/// One convex polygon, as a fan of triangles; in 2D a line through the points. Adds to `total` how many bonds it cut.
+static pls_status cut(const pls_builder *b, pls_bonds_id id, const pls_vec3 *point, size_t count, size_t *total)
 {
-    size_t bonds;
     const bool flat = b->scene->dimension == 2;
     for (size_t k = flat ? 0 : 1; k + 1 < count; ++k)
+    {
+        size_t bonds;
         PLS_TRY(pls_world_cut_bonds(b->world, id, flat ? point[k] : point[0], flat ? point[k + 1] : point[k],
                                     flat ? point[k] : point[k + 1], &bonds));
+        *total += bonds;
+    }
     return PLS_OK;
 }
 
-static pls_status cut_along_points(const pls_builder *b, pls_bonds_id id, const pls_node *list)
+static pls_status cut_along_points(const pls_builder *b, pls_bonds_id id, const pls_node *list, size_t *total)
 {
     pls_vec3 *point = NULL;
     PLS_TRY(pls_allocate(&point, list->count, sizeof *point, "points of a crack"));
@@ -77,13 +82,13 @@ static pls_status cut_along_points(const pls_builder *b, pls_bonds_id id, const 
         const pls_node *p = list->child[k];
         point[k] = pls_vec(p->child[0]->number, p->child[1]->number, p->count > 2 ? p->child[2]->number : 0.0);
     }
-    const pls_status status = cut(b, id, point, list->count);
+    const pls_status status = cut(b, id, point, list->count, total);
     pls_release(&point);
     return status;
 }
 
 /// A disc as a polygon of the same area.
-static pls_status cut_disc(const pls_builder *b, pls_bonds_id id, const pls_node *crack)
+static pls_status cut_disc(const pls_builder *b, pls_bonds_id id, const pls_node *crack, size_t *total)
 {
     enum { CORNERS = 96 };
     const pls_vec3 n = pls_unit(pls_scene_vector(crack, "normal")), centre = pls_scene_vector(crack, "centre");
@@ -92,7 +97,7 @@ static pls_status cut_disc(const pls_builder *b, pls_bonds_id id, const pls_node
     pls_vec3 corner[CORNERS];
     for (int k = 0; k < CORNERS; ++k)
         corner[k] = pls_add(centre, pls_add(pls_scale(u, radius * cos(turn * k)), pls_scale(v, radius * sin(turn * k))));
-    return cut(b, id, corner, CORNERS);
+    return cut(b, id, corner, CORNERS, total);
 }
 
 static pls_status cut_cracks(const pls_builder *b, pls_bonds_id id, const pls_node *cracks)
@@ -100,8 +105,11 @@ static pls_status cut_cracks(const pls_builder *b, pls_bonds_id id, const pls_no
     for (size_t k = 0; cracks && k < cracks->count; ++k)
     {
         const pls_node *crack = cracks->child[k], *points = pls_node_get(crack, "points");
-        pls_status status = points ? cut_along_points(b, id, points) : cut_disc(b, id, crack);
+        size_t total = 0;
+        pls_status status = points ? cut_along_points(b, id, points, &total) : cut_disc(b, id, crack, &total);
         PLS_TRY(pls_node_context(status, crack, "crack"));
+        if (total == 0)
+            return pls_node_fail(crack, "places are those of the world [m]", "the crack cuts no bond that another one has not cut");
     }
     return PLS_OK;
 }

@@ -34,7 +34,7 @@ static pls_vec3 place(const lattice *l, size_t i, size_t j, size_t k)
 {
     const double s = l->spacing;
     pls_vec3 at = pls_vec(s * (double)i, step_along(l, 1) * (double)j, l->dimension == 3 ? step_along(l, 2) * (double)k : 0.0);
-    if (l->hexagonal) at.x += 0.5 * s * (double)((j + k) % 2), at.y += s * sqrt(3.0) / 6.0 * (double)(k % 2);
+    if (l->hexagonal) at.x += 0.5 * s * ((double)((j + k) % 2) - 0.5), at.y += s * sqrt(3.0) / 6.0 * (double)(k % 2);
     return pls_add(l->first, at);
 }
 

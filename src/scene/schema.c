@@ -53,9 +53,12 @@ static const pls_section sections[] = {
     {"contact", "contact[k]",
      "The contact law between two materials. The parameters of the law stand beside `law`. A pair that is named wins over `all`."},
     {"bond", "bonds[k]",
-     "Bonds between the bodies of some entries: each body is a point of a continuum and acts on all others within the horizon "
-     "(peridynamics). Volumes are masses by the densities of materials; moduli are "
-     "those of materials. Bodies do not touch while a bond holds them."},
+     "Bonds between the bodies of some entries. With the laws of peridynamics each body is a point of a continuum and acts on all others "
+     "within the horizon; volumes are masses by the densities of "
+     "materials. Beams join bodies within the horizon and turn with them. Moduli are those of materials. Bodies do not touch while a bond "
+     "holds them. What makes families of bonds (`influence`, "
+     "`spacing`, `correction`, `plane`, `fracture_energy`) has no place in entries of beams. The parameters of the law stand beside "
+     "`law`."},
     {"crack", "bonds[k].cracks[k]", "A crack that is there from the start: bonds that cross it are broken."},
     {"gravity", "forces[k]", "Uniform gravity."},
     {"field_force", "forces[k]", "A field of forces given by expressions."},

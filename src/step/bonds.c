@@ -8,6 +8,7 @@
 #include "bond/bond_set.h"
 #include "bond/influence.h"
 #include "math/lanczos.h"
+#include "step/contact_rates.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -29,6 +30,12 @@ static pls_status check_def(const pls_world *world, const pls_bonds_def *def)
     if (!def->name[0]) return pls_fail(PLS_INVALID_ARGUMENT, "a set of bonds needs a name");
     if (pls_world_find_bonds(world, def->name).index1) return pls_fail(PLS_DUPLICATE, "there is a set of bonds '%s' already", def->name);
     if (!def->ops) return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s' need a law", def->name);
+    if (def->ops->api_version != PLS_API_VERSION)
+        return pls_fail(PLS_VERSION, "bond law '%s' is made for version %u of the interface; this is version %d: compile it anew",
+                        def->ops->name ? def->ops->name : "?", def->ops->api_version, PLS_API_VERSION);
+    if (!def->ops->name || (def->ops->pair ? !def->ops->prepare || !def->ops->stiffness : !def->ops->linear))
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "bonds '%s': their law lacks a name, or `linear`, or of `pair`, `prepare` and `stiffness` one", def->name);
     if (!(def->horizon > 0.0) || !isfinite(def->horizon))
         return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the horizon is %g m; it must be positive", def->name, def->horizon);
     if (isnan(def->spacing) || isinf(def->spacing))
@@ -71,7 +78,7 @@ static pls_status collect_points(const pls_world *world, const pls_bonds_def *de
         const pls_body_place *p = &b->place[row];
         const pls_material *m = &world->laws.material[b->kind[row].material];
         const double volume = b->mass[row].mass / m->values.density;
-        if (!(volume > 0.0) || !isfinite(volume))
+        if (!def->ops->pair && (!(volume > 0.0) || !isfinite(volume)))
             return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': body %zu has no volume: material '%s' needs a density", def->name, n,
                             m->name);
         material[n] = b->kind[row].material;
@@ -79,31 +86,53 @@ static pls_status collect_points(const pls_world *world, const pls_bonds_def *de
             (pls_bond_point){.x = {p->x, p->y, p->z},
                              .volume = volume,
                              .spacing = def->spacing != 0.0 ? def->spacing : pow(volume / world->domain.thickness, 1.0 / dimension),
-                             .number = (uint32_t)n};
+                             .number = (uint32_t)n,
+                             .generation = b->kind[row].generation};
     }
     return *count > 0 ? PLS_OK
                       : pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s' have no points: there are no bodies in their groups", def->name);
 }
 
-/// What the law says of every material that has points.
-static pls_status ask_law(const pls_world *world, const pls_bonds_def *def, const pls_bond_point *point, size_t count,
-                          const uint16_t *material, pls_bond_coefficients *law)
+/// The law's parameters: given ones, or defaults; checked.
+static pls_status take_values(const pls_bonds_def *def, double values[PLS_MAX_VALUES])
 {
-    double values[PLS_MAX_VALUES];
     char owner[PLS_NAME_SIZE + 32];
     pls_parameters_default(def->ops->parameters, values);
     if (def->values) memcpy(values, def->values, (size_t)pls_parameter_values(def->ops->parameters) * sizeof *values);
     snprintf(owner, sizeof owner, "bond law '%s'", def->ops->name);
-    PLS_TRY(pls_parameters_check(def->ops->parameters, values, owner));
+    return pls_parameters_check(def->ops->parameters, values, owner);
+}
+
+/// What the law says of a material.
+static pls_status ask_about(const pls_world *world, const pls_bonds_def *def, const double *values, size_t m, pls_bond_coefficients *law,
+                            double constants[PLS_BOND_MAX_CONSTANTS])
+{
+    const pls_bond_setting setting = {.dimension = world->def.dimension, .plane = def->plane, .material = world->laws.material[m].values};
+    const pls_status status = def->ops->pair ? def->ops->prepare(values, &setting, constants) : def->ops->linear(values, &setting, law);
+    return status == PLS_OK ? PLS_OK : pls_fail_context(status, "bonds '%s', material '%s': ", def->name, world->laws.material[m].name);
+}
+
+/// What the law says of every material that has points; a pair law must say the same of all.
+static pls_status ask_law(const pls_world *world, const pls_bonds_def *def, const pls_bond_point *point, size_t count,
+                          const uint16_t *material, pls_bond_coefficients *law, double constants[PLS_BOND_MAX_CONSTANTS])
+{
+    double values[PLS_MAX_VALUES];
+    bool known = false;
+    PLS_TRY(take_values(def, values));
     for (size_t m = 0; m < world->laws.material_count; ++m)
     {
         bool used = false;
+        double own[PLS_BOND_MAX_CONSTANTS] = {0};
         for (size_t p = 0; p < count && !used; ++p) used = material[point[p].number] == m;
         if (!used) continue;
-        const pls_bond_setting setting = {
-            .dimension = world->def.dimension, .plane = def->plane, .material = world->laws.material[m].values};
-        pls_status status = def->ops->linear(values, &setting, &law[m]);
-        if (status != PLS_OK) return pls_fail_context(status, "bonds '%s', material '%s': ", def->name, world->laws.material[m].name);
+        PLS_TRY(ask_about(world, def, values, m, &law[m], own));
+        if (known && memcmp(own, constants, sizeof own) != 0)
+            return pls_fail(
+                PLS_INVALID_ARGUMENT,
+                "bonds '%s': law '%s' joins bodies of one material, but '%s' has other values than those before it; give sets of their own",
+                def->name, def->ops->name, world->laws.material[m].name);
+        memcpy(constants, own, sizeof own);
+        known = true;
     }
     return PLS_OK;
 }
@@ -114,11 +143,20 @@ static pls_status find_stretch(const pls_world *world, const pls_bonds_def *def,
     const int d = world->def.dimension;
     *stretch = def->critical_stretch;
     if (isnan(def->fracture_energy)) return PLS_OK;
+    if (def->ops->pair)
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "bonds '%s': law '%s' breaks by its own strength or a critical stretch, not by a fracture energy", def->name,
+                        def->ops->name);
     for (size_t m = 0; m < world->laws.material_count; ++m)
     {
         if (law[m].extension == 0.0) continue;                                               // no points of it
         const double bulk = (d * law[m].dilation + law[m].extension) / (d == 3 ? 9.0 : 4.0); // what a uniform dilation meets
         const double own = pls_critical_stretch(def, d, bulk, def->fracture_energy);
+        if (!isfinite(own) || !(own > 0.0))
+            return pls_fail(PLS_INVALID_ARGUMENT,
+                            "bonds '%s': no critical stretch follows from a fracture energy of %g J/m^2; is the influence function "
+                            "positive below the horizon?",
+                            def->name, def->fracture_energy);
         if (isfinite(*stretch) && !(fabs(own - *stretch) <= 1e-9 * own))
             return pls_fail(PLS_INVALID_ARGUMENT,
                             "bonds '%s': one fracture energy means other critical stretches in other materials (%g and %g); give "
@@ -139,12 +177,13 @@ static pls_status make(pls_world *world, const pls_bonds_def *def, pls_bond_set 
     if (status == PLS_OK) status = pls_allocate(&material, world->bodies.numbers, sizeof *material, "points of bonds");
     if (status == PLS_OK) status = pls_allocate(&law, world->laws.material_count, sizeof *law, "points of bonds");
     if (status == PLS_OK) status = collect_points(world, def, point, material, &count);
-    if (status == PLS_OK) status = ask_law(world, def, point, count, material, law);
-    pls_bond_plan plan = {.def = def, .law = law, .material = material};
+    double constants[PLS_BOND_MAX_CONSTANTS] = {0};
+    if (status == PLS_OK) status = ask_law(world, def, point, count, material, law, constants);
+    pls_bond_plan plan = {.def = def, .law = law, .constants = constants, .material = material};
     if (status == PLS_OK) status = find_stretch(world, def, law, &plan.stretch);
     if (status == PLS_OK)
     {
-        status = pls_bond_set_make(set, &plan, point, count, &world->domain);
+        status = pls_bond_set_make(set, &plan, point, count, &world->bodies, &world->domain);
         point = NULL; // the set's
     }
     pls_release(&point);
@@ -155,6 +194,21 @@ static pls_status make(pls_world *world, const pls_bonds_def *def, pls_bond_set 
 
 static pls_status find_stiffness(const pls_world *world, pls_bond_set *set);
 
+/// Bodies that are bonded now touch no longer.
+static void drop_contacts(pls_world *world, const pls_bond_set *set)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < world->memory.count; ++k)
+        if (!pls_bond_holds(set, world->memory.entry[k].number_i, world->memory.entry[k].number_j))
+            world->memory.entry[kept++] = world->memory.entry[k];
+    world->memory.count = kept;
+    kept = 0;
+    for (size_t k = 0; k < world->records.count; ++k)
+        if (!pls_bond_holds(set, world->records.entry[k].number_i, world->records.entry[k].number_j))
+            world->records.entry[kept++] = world->records.entry[k];
+    world->records.count = kept;
+}
+
 pls_status pls_world_add_bonds(pls_world *world, const pls_bonds_def *def, pls_bonds_id *id)
 {
     *id = (pls_bonds_id){0};
@@ -164,12 +218,16 @@ pls_status pls_world_add_bonds(pls_world *world, const pls_bonds_def *def, pls_b
     PLS_TRY(pls_neighbours_detach(world));
     pls_bond_set *set = &world->bond[world->bond_count];
     PLS_TRY(make(world, def, set));
-    const pls_status status = find_stiffness(world, set);
+    pls_status status = find_stiffness(world, set);
+    if (status == PLS_OK && !isfinite(set->stiffness))
+        status =
+            pls_fail(PLS_NOT_A_NUMBER, "bonds '%s': their stiffness is no number; are moduli, masses and lengths in SI units?", def->name);
     if (status != PLS_OK)
     {
         pls_bond_set_free(set);
         return status;
     }
+    drop_contacts(world, set);
     id->index1 = (uint16_t)++world->bond_count;
     return PLS_OK;
 }
@@ -224,7 +282,12 @@ void pls_bonds_dilate(pls_world *world, int thread, int threads)
     }
 }
 
-void pls_bonds_dilated(pls_world *world) { pls_bonds_placed(world); }
+void pls_bonds_dilated(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (world->bond[s].dilates) pls_bond_take_spread(&world->bond[s]);
+    pls_bonds_placed(world);
+}
 
 void pls_bonds_act(pls_world *world, int thread, int threads)
 {
@@ -232,9 +295,17 @@ void pls_bonds_act(pls_world *world, int thread, int threads)
     {
         size_t first, last;
         share_of(&world->bond[s], thread, threads, &first, &last);
-        if (PLS_SIMD_SELECT(pls_bond_act)(&world->bond[s], first, last))
+        const bool links = world->bond[s].links.ops != NULL;
+        if (first < last && (links ? PLS_SIMD_SELECT(pls_link_act) : PLS_SIMD_SELECT(pls_bond_act))(&world->bond[s], first, last))
             __atomic_store_n(&world->bond[s].any_overlong, true, __ATOMIC_RELAXED);
     }
+}
+
+/// Rows of a set as bodies are now: scratch of the step, so a world that is only looked at may fill it.
+static void take_rows(const pls_world *world, pls_bond_set *set)
+{
+    pls_bond_take_places(set, &world->bodies, 0, set->family.count);
+    pls_bond_take_ghosts(set, &world->domain);
 }
 
 bool pls_bonds_hold(const pls_world *world, uint32_t a, uint32_t b)
@@ -282,6 +353,7 @@ static void let_touch(void *context, uint32_t a, uint32_t b)
     if (pls_bonds_hold(world, a, b)) return;
     const uint32_t row_a = world->bodies.row_of[a], row_b = world->bodies.row_of[b];
     if (row_a == PLS_NO_ROW || row_b == PLS_NO_ROW) return;
+    world->overlap_due = 0.0; // they may overlap already
     if (pls_pair_is_solid(&world->bodies, row_a, row_b))
         world->list.stale = true; // lists of solids have no pairs that are held
     else
@@ -297,33 +369,35 @@ void pls_bonds_acted(pls_world *world)
 
 void pls_bonds_leave(pls_world *world, uint32_t number)
 {
-    for (size_t s = 0; s < world->bond_count; ++s)
+    for (size_t k = 0; k < world->bond_count; ++k)
     {
-        pls_bond_set *set = &world->bond[s];
+        pls_bond_set *set = &world->bond[k];
         const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT;
         if (p == PLS_NO_POINT) continue;
-        for (size_t slot = (size_t)set->family.start[p] * PLS_BOND_VECTOR, k = 0; k < set->family.size[p]; ++k, ++slot)
+        take_rows(world, set);
+        for (size_t slot = (size_t)set->family.start[p] * PLS_BOND_VECTOR, n = 0; n < set->family.size[p]; ++n, ++slot)
         {
             pls_bond_break(set, (pls_bond_end){p, slot});
             pls_bonds_note_damage(world, set->family.point[pls_point_behind(&set->family, set->family.partner[slot])].number);
         }
+        set->point_of[number] = PLS_NO_POINT; // another body may get the number
     }
 }
 
 // ---- the stable step -----------------------------------------------------------------------------------------------------------------------------------------
 
 /// The stiffness of a set as bodies lie now, between displacements times roots of masses.
-typedef struct operator
+typedef struct stiffness_operator
 {
     const pls_bond_set *set;
-    double *root;   ///< per point: root of its inverse mass, 0 where no force moves it
-    double *spread; ///< scratch per point: A
+    double *root;         ///< per point: root of its inverse mass, 0 where no force moves it
+    double *root_inertia; ///< the same of its smallest moment of inertia, for pair laws
+    double *spread;       ///< scratch per point: A
     int dimension;
-}
-operator;
+} stiffness_operator;
 
 /// Change of a bond's length, and its direction.
-static double lengthening(const operator* o, size_t p, size_t slot, const double *x, double y[3])
+static double lengthening(const stiffness_operator *o, size_t p, size_t slot, const double *x, double y[3])
 {
     const pls_families *f = &o->set->family;
     const double *a = o->set->row[p], *b = o->set->row[f->partner[slot]];
@@ -341,7 +415,7 @@ static double lengthening(const operator* o, size_t p, size_t slot, const double
 
 static void multiply(const void *context, const double *x, double *y)
 {
-    const operator* o = context;
+    const stiffness_operator *o = context;
     const pls_bond_set *set = o->set;
     const pls_families *f = &set->family;
 #pragma omp parallel for schedule(static)
@@ -358,7 +432,7 @@ static void multiply(const void *context, const double *x, double *y)
         double sum[3] = {0}, unit[3];
         for (size_t slot = (size_t)f->start[p] * PLS_BOND_VECTOR, k = 0; k < f->size[p]; ++k, ++slot)
         {
-            const double change = lengthening(o, p, slot, x, unit), stiffness = set->twice + (double)set->residual[slot];
+            const double change = lengthening(o, p, slot, x, unit), stiffness = set->twice * (double)set->share[slot];
             const double tension = set->weight[slot] *
                                    (o->spread[p] + o->spread[pls_point_behind(f, f->partner[slot])] + stiffness * change / f->length[slot]);
             for (int c = 0; c < o->dimension; ++c) sum[c] -= tension * unit[c];
@@ -367,37 +441,110 @@ static void multiply(const void *context, const double *x, double *y)
     }
 }
 
+/// A bond that turns with its bodies, as an Euler-Bernoulli beam that has not yet moved: forces and torques on the own end for displacements and rotations of both.
+static void add_link(const stiffness_operator *o, size_t p, size_t slot, const double *x, double f[6])
+{
+    const pls_families *fam = &o->set->family;
+    const double *a = o->set->links.pose[p], *b = o->set->links.pose[fam->partner[slot]];
+    const size_t q = pls_point_behind(fam, fam->partner[slot]);
+    const pls_vec3 r = pls_vec(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    const double l = pls_length(r);
+    const pls_vec3 e = pls_scale(r, 1.0 / l);
+    pls_pair_stiffness k;
+    o->set->links.ops->stiffness(o->set->links.constants, fam->length[slot], &k);
+    pls_vec3 u = pls_vec(0, 0, 0), turn[2];
+    const size_t end[2] = {p, q};
+    for (int n = 0; n < 2; ++n)
+    {
+        const double *of = x + 6 * end[n], m = o->root[end[n]], i = o->root_inertia[end[n]];
+        u = pls_add(u, pls_scale(pls_vec(of[0], of[1], of[2]), n == 0 ? -m : m));
+        turn[n] = pls_scale(pls_vec(of[3], of[4], of[5]), i);
+    }
+    const pls_vec3 chord = pls_scale(pls_cross(e, u), 1.0 / l);
+    const double along = pls_dot(u, e), twist = pls_dot(pls_sub(turn[1], turn[0]), e);
+    for (int n = 0; n < 2; ++n)
+    {
+        turn[n] = pls_sub(turn[n], chord);
+        turn[n] = pls_sub(turn[n], pls_scale(e, pls_dot(turn[n], e)));
+    }
+    const pls_vec3 shear = pls_scale(pls_cross(pls_add(turn[0], turn[1]), e), -6.0 * k.bending / l);
+    const pls_vec3 bend = pls_scale(pls_add(pls_scale(turn[0], 2.0), turn[1]), -2.0 * k.bending);
+    const pls_vec3 force = pls_add(pls_scale(e, k.axial * along), shear), torque = pls_add(pls_scale(e, k.torsion * twist), bend);
+    f[0] += force.x, f[1] += force.y, f[2] += force.z, f[3] += torque.x, f[4] += torque.y, f[5] += torque.z;
+}
+
+static void multiply_links(const void *context, const double *x, double *y)
+{
+    const stiffness_operator *o = context;
+    const pls_families *f = &o->set->family;
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < f->count; ++p)
+    {
+        double sum[6] = {0};
+        for (size_t slot = (size_t)f->start[p] * PLS_BOND_VECTOR, k = 0; k < f->size[p]; ++k, ++slot) add_link(o, p, slot, x, sum);
+        for (size_t c = 0; c < 6; ++c)
+        {
+            const bool free = o->dimension == 3 || c < 2 || c == 5;
+            y[6 * p + c] = free ? -(c < 3 ? o->root[p] : o->root_inertia[p]) * sum[c] : 0.0;
+        }
+    }
+}
+
+static pls_status allocate_operator(stiffness_operator *o, size_t count, double **x)
+{
+    const size_t numbers = o->set->links.ops ? 6 : 3;
+    PLS_TRY(pls_allocate(x, numbers * count, sizeof **x, "the stable step"));
+    PLS_TRY(pls_allocate(&o->root, count, sizeof *o->root, "the stable step"));
+    PLS_TRY(pls_allocate(&o->root_inertia, count, sizeof *o->root_inertia, "the stable step"));
+    return pls_allocate(&o->spread, count, sizeof *o->spread, "the stable step");
+}
+
+static void fill_operator(const pls_world *world, stiffness_operator *o, double *x)
+{
+    const size_t numbers = o->set->links.ops ? 6 : 3;
+    for (size_t p = 0; p < o->set->family.count; ++p)
+    {
+        const uint32_t number = o->set->family.point[p].number, row = world->bodies.row_of[number];
+        pls_random random = pls_random_stream(0, number, PLS_FOR_USER);
+        const bool moves = row != PLS_NO_ROW && world->bodies.load[row].inv_mass > 0.0;
+        o->root[p] = moves ? sqrt(world->bodies.load[row].inv_mass) : 0.0;
+        o->root_inertia[p] = moves ? 1.0 / sqrt(pls_smallest_moment(&world->bodies.mass[row], o->dimension)) : 0.0;
+        for (size_t c = 0; c < numbers; ++c)
+        {
+            const double u = pls_random_uniform(&random) - 0.5;
+            const bool free = o->dimension == 3 || c < 2 || c == 5;
+            x[numbers * p + c] = moves && free ? u : 0.0;
+        }
+    }
+}
+
 static pls_status find_stiffness(const pls_world *world, pls_bond_set *set)
 {
-    operator o = {.set = set, .dimension = world->def.dimension};
+    stiffness_operator o = {.set = set, .dimension = world->def.dimension};
     double *x = NULL;
-    pls_bond_take_places(set, &world->bodies, 0, set->family.count);
+    const size_t count = set->family.count;
+    pls_bond_take_places(set, &world->bodies, 0, count);
     pls_bond_take_ghosts(set, &world->domain);
-    pls_status status = pls_allocate(&x, 3 * set->family.count, sizeof *x, "the stable step");
-    if (status == PLS_OK) status = pls_allocate(&o.root, set->family.count, sizeof *o.root, "the stable step");
-    if (status == PLS_OK) status = pls_allocate(&o.spread, set->family.count, sizeof *o.spread, "the stable step");
-    for (size_t p = 0; status == PLS_OK && p < set->family.count; ++p)
-    {
-        const uint32_t number = set->family.point[p].number, row = world->bodies.row_of[number];
-        pls_random random = pls_random_stream(0, number, PLS_FOR_USER);
-        o.root[p] = row == PLS_NO_ROW ? 0.0 : sqrt(world->bodies.load[row].inv_mass);
-        for (size_t c = 0; c < (size_t)o.dimension; ++c) x[3 * p + c] = o.root[p] > 0.0 ? pls_random_uniform(&random) - 0.5 : 0.0;
-    }
-    if (status == PLS_OK) status = pls_lanczos_largest(multiply, &o, 3 * set->family.count, x, &set->stiffness);
+    pls_status status = allocate_operator(&o, count, &x);
+    if (status == PLS_OK) fill_operator(world, &o, x);
+    if (status == PLS_OK)
+        status = set->links.ops ? pls_lanczos_largest(multiply_links, &o, 6 * count, x, &set->stiffness)
+                                : pls_lanczos_largest(multiply, &o, 3 * count, x, &set->stiffness);
     set->stiffness *= margin;
     pls_release(&x);
     pls_release(&o.root);
+    pls_release(&o.root_inertia);
     pls_release(&o.spread);
     return status;
 }
 
-double pls_bonds_rate(const pls_world *world, uint32_t number)
+double pls_bonds_rate(const pls_world *world, uint32_t number, bool of_rotation)
 {
     double sum = 0.0;
     for (size_t s = 0; s < world->bond_count; ++s)
     {
         const pls_bond_set *set = &world->bond[s];
-        if (number < set->numbers && set->point_of[number] != PLS_NO_POINT) sum += set->stiffness;
+        if (number < set->numbers && set->point_of[number] != PLS_NO_POINT && (!of_rotation || set->links.ops)) sum += set->stiffness;
     }
     return sum;
 }
@@ -421,6 +568,21 @@ static pls_bond_set *find_set(const pls_world *world, pls_bonds_id id)
     return NULL;
 }
 
+void pls_bonds_energies(const pls_world *world, double *stored, double *broken)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        pls_bond_set *set = &world->bond[s];
+        take_rows(world, set);
+#pragma omp parallel for schedule(static)
+        for (size_t p = 0; p < set->family.count; ++p)
+        {
+            stored[set->family.point[p].number] += pls_bond_energy(set, p);
+            broken[set->family.point[p].number] += set->broken[p];
+        }
+    }
+}
+
 pls_status pls_world_bonds_figures(const pls_world *world, pls_bonds_id id, pls_bonds_figures *figures)
 {
     pls_bond_set *set = find_set(world, id);
@@ -429,8 +591,7 @@ pls_status pls_world_bonds_figures(const pls_world *world, pls_bonds_id id, pls_
         (pls_bonds_figures){.points = set->family.count, .bonds = set->family.bonds, .broken = set->gone, .bytes = pls_bond_set_bytes(set)};
     double *energy = NULL;
     PLS_TRY(pls_allocate(&energy, set->family.count, sizeof *energy, "energies of bonds"));
-    pls_bond_take_places(set, &world->bodies, 0, set->family.count);
-    pls_bond_take_ghosts(set, &world->domain);
+    take_rows(world, set);
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < set->family.count; ++p) energy[p] = pls_bond_energy(set, p);
     figures->energy = pls_sum(energy, set->family.count, 1);
@@ -442,7 +603,7 @@ pls_status pls_world_bonds_figures(const pls_world *world, pls_bonds_id id, pls_
 double pls_world_bonds_damage(const pls_world *world, pls_bonds_id id, pls_body_id body)
 {
     const uint32_t number = body.index1 - 1;
-    if (id.index1 < 1 || id.index1 > world->bond_count || body.index1 == 0) return NAN;
+    if (id.index1 < 1 || id.index1 > world->bond_count || pls_body_row(world, body) == PLS_NO_ROW) return NAN;
     const pls_bond_set *set = &world->bond[id.index1 - 1];
     const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT;
     return p == PLS_NO_POINT ? NAN : (double)pls_bond_lost(set, p) / (double)set->family.size[p];
@@ -454,8 +615,7 @@ pls_status pls_world_cut_bonds(pls_world *world, pls_bonds_id id, pls_vec3 a, pl
     *cut = 0;
     if (!set) return PLS_INVALID_ARGUMENT;
     PLS_TRY(pls_neighbours_detach(world));
-    pls_bond_take_places(set, &world->bodies, 0, set->family.count);
-    pls_bond_take_ghosts(set, &world->domain);
+    take_rows(world, set);
     const size_t before = set->gone;
     pls_bond_cut(set, world->def.dimension, a, b, c);
     *cut = set->gone - before;

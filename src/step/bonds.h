@@ -17,8 +17,10 @@ bool pls_bonds_dilate_at_all(const pls_world *world);
 
 /// Whether a bond between two bodies, by their numbers, holds.
 bool pls_bonds_hold(const pls_world *world, uint32_t a, uint32_t b);
-/// What bonds add to the stiffness of a body, by its number: a bound of the largest eigenvalue of M^-1 K of the sets it is in, as they were made [1/s^2].
-double pls_bonds_rate(const pls_world *world, uint32_t number);
+/// What bonds add to the stiffness of a body, by its number, against translation or rotation: a bound of the largest eigenvalue of M^-1 K of the sets it is in, as they were made [1/s^2].
+double pls_bonds_rate(const pls_world *world, uint32_t number, bool of_rotation);
+/// Add, by numbers of bodies, the energies that their families store and that bonds held when they broke [J].
+void pls_bonds_energies(const pls_world *world, double *stored, double *broken);
 /// Damage of a body as its sets have it now.
 void pls_bonds_note_damage(pls_world *world, uint32_t number);
 /// Bonds of either direction of all sets, and their points.

@@ -181,6 +181,7 @@ static pls_status build_lists(pls_world *world)
                                      &world->memory);
     }
     if (status == PLS_OK && world->bond_count > 0) status = pls_pair_list_hold(&world->list, &world->bodies, bonds_hold, world);
+    if (status != PLS_OK) world->list.stale = true;
     if (status == PLS_OK && world->domain.any_periodic) reach_of_images(&world->list, &world->solids);
     pls_near_pairs_free(&near);
     return status;

@@ -263,6 +263,7 @@ pls_status pls_persist_restore_end(pls_world *world)
             return pls_fail(PLS_CORRUPT, "a saved contact joins bodies %u and %u, which are not there", entry->number_i, entry->number_j);
     }
     for (size_t k = 0; k < world->records.count; ++k) PLS_TRY(check_record(world, &world->records.entry[k]));
+    for (size_t s = 0; s < world->bond_count; ++s) PLS_TRY(pls_bond_check_restored(&world->bond[s], bodies));
     for (uint32_t n = 0; world->bond_count > 0 && n < bodies->numbers; ++n) pls_bonds_note_damage(world, n);
     return pls_world_resume(world);
 }

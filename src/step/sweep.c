@@ -82,7 +82,7 @@ static pls_status finish_block(pls_world *world, size_t first, size_t last, doub
         PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
     else if (forced)
         memset(force, 0, (last - first) * 4 * sizeof *force), memset(torque, 0, (last - first) * 4 * sizeof *torque);
-    for (size_t k = 0; k < world->bond_count; ++k) pls_bond_gather(&world->bond[k], &world->bodies, first, last, force);
+    for (size_t k = 0; k < world->bond_count; ++k) pls_bond_gather(&world->bond[k], &world->bodies, first, last, force, torque);
     if (solid) pls_solid_gather(&world->solids, first, last, force, torque);
     PLS_SIMD_SELECT(pls_verlet_finish)
     (&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL, go_on, report);
@@ -488,7 +488,8 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     pls_barrier_init(&s.contacts_known);
     pls_barrier_init(&s.step_done);
     const bool large = needs_team(list->block_count) || needs_team(world->solids.block_count) ||
-                       needs_team(pls_block_count(world->bodies.count, BODY_BLOCK));
+                       needs_team(pls_block_count(world->bodies.count, BODY_BLOCK)) ||
+                       needs_team(pls_block_count(pls_bonds_points(world), PLS_BOND_BLOCK));
     if (large && !list->alone)
     {
 #pragma omp parallel

@@ -145,11 +145,8 @@ static pls_body_rates rates_of(const pls_world *world, uint32_t row, int coordin
     }
     if (!world->memory_holds && world->solids.count > 0) add_solids(world, row, root_inertia, &rates);
     pls_add_missing_contacts(world, row, coordination, &rates);
-    if (world->bond_count > 0)
-    {
-        const double bonds = pls_bonds_rate(world, world->bodies.kind[row].number);
-        for (int a = 0; a < world->def.dimension; ++a) rates.stiffness[7 * a] += bonds;
-    }
+    for (int a = 0; world->bond_count > 0 && a < 6; ++a)
+        rates.stiffness[7 * a] += pls_bonds_rate(world, world->bodies.kind[row].number, a >= 3);
     return rates;
 }
 
@@ -175,7 +172,8 @@ static void estimate_body(const pls_world *world, uint32_t number, int coordinat
                                  .damping = damping,
                                  .body = number,
                                  .contacts = rates.contacts,
-                                 .damping_limits = damping > sqrt(stiffness)};
+                                 .damping_limits = damping > sqrt(stiffness),
+                                 .bonds = world->bond_count > 0 ? pls_bonds_rate(world, number, false) : 0.0};
 }
 
 /// The bound body by body: of those that allow the smallest step, less than `below`, the first; none: a step of `below`.
@@ -293,9 +291,8 @@ static pls_status refuse(const pls_world *world, int coordination, const pls_ste
                  "many, "
                  "say how many by time.coordination.",
                  coordination);
-    const double bonds = pls_bonds_rate(world, e->body);
-    if (!e->damping_limits && bonds > 0.5 * e->stiffness)
-        snprintf(limit, sizeof limit, "its bonds limit it: natural frequency %.4g 1/s", sqrt(bonds));
+    if (!e->damping_limits && e->bonds > 0.5 * e->stiffness)
+        snprintf(limit, sizeof limit, "its bonds limit it: natural frequency %.4g 1/s", sqrt(e->bonds));
     else if (e->damping_limits)
         snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping,
                  sqrt(e->stiffness));

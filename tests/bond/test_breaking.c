@@ -71,7 +71,6 @@ static void points_touch_when_their_bond_is_broken_and_only_then(void **state)
     MUST(pls_world_run(b.scene.world, 50));
     assert_true(distance(&b) < b.plan.spacing - 1e-5);
     assert_int_equal(pls_world_contact_count(b.scene.world), 0);
-    const double squeezed = distance(&b);
     lattice_free(&b);
 
     b = make_pair(1e-3, 1e-4);
@@ -91,7 +90,6 @@ static void points_touch_when_their_bond_is_broken_and_only_then(void **state)
         MUST(pls_step(b.scene.world));
     }
     assert_true(fabs((b.plan.spacing - least) / deepest - 1.0) < 1e-2);
-    assert_true(squeezed > 0.0);
     lattice_free(&b);
 }
 
@@ -115,24 +113,18 @@ static lattice make_torn(double dt)
     return b;
 }
 
-static double energy_of(lattice *b)
-{
-    const pls_bonds_figures f = figures_of(b);
-    return verify_total_energy(b->scene.world) + f.energy + f.energy_broken;
-}
-
 /// What the book of energy is off by after 3 s, by the energy of the start.
 static double book_error(double dt)
 {
     lattice b = make_torn(dt);
-    const double before = energy_of(&b);
+    const double before = verify_total_energy(b.scene.world);
     const pls_vec3 momentum = verify_figures(b.scene.world).momentum;
     MUST(pls_world_run(b.scene.world, (uint64_t)(3.0 / dt + 0.5)));
     const pls_bonds_figures f = figures_of(&b);
     assert_true(f.broken > f.bonds / 50 && f.broken < f.bonds / 2);
-    assert_true(f.energy_broken > 0.1 * before);
+    assert_true(f.energy_broken > 0.05 * before);
     assert_true(pls_length(pls_sub(verify_figures(b.scene.world).momentum, momentum)) < 1e-13);
-    const double error = energy_of(&b) / before - 1.0;
+    const double error = verify_total_energy(b.scene.world) / before - 1.0;
     lattice_free(&b);
     return error;
 }

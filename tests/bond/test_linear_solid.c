@@ -140,7 +140,7 @@ static void a_periodic_block_has_no_surface(void **state)
     lattice_free(&b);
 }
 
-// The block of tests/data/lps_block_lammps.csv: 9 x 7 x 5 points, K = 10 Pa, mu = 6 Pa, 100 steps of 1e-4 s.
+// The block of tests/data/lps_block_lammps.csv: 9 x 7 x 5 points, K = 10 Pa, mu = 4 Pa, 100 steps of 1e-4 s.
 static void a_block_moves_as_in_lammps(void **state)
 {
     (void)state;

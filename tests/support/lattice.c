@@ -16,7 +16,7 @@ lattice_plan lattice_default(int dimension, size_t side)
                           .horizon = 0.3015,
                           .density = 2.0,
                           .bulk = 10.0,
-                          .shear = 6.0,
+                          .shear = 4.0,
                           .thickness = 1.0,
                           .influence = PLS_INFLUENCE_INVERSE,
                           .critical_stretch = INFINITY,
