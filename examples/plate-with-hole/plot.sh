@@ -5,7 +5,7 @@ set -euo pipefail
 results=${1:?usage: plot.sh <run directory>}
 
 draw() { # <frame> <colour> <range>
-    "${PARTICLS:-particls}" render "$results" -o "$results/view_$1_$2.png" --frame "$1" --colour "$2" --range "$3" --view z --size 640x480 --no-shadows --quiet
+    "${PARTICLS:-particls}" render "$results" -o "$results/view_$1_$2.png" --frame "$1" --colour "$2" --range "$3" --view z --size 420x315 --no-shadows --quiet
 }
 for frame in 0 5 20; do
     draw $frame damage 0:0.6
@@ -14,7 +14,7 @@ for frame in 0 5 20; do
 done
 
 gnuplot <<GNUPLOT
-set terminal pngcairo size 1440,1110 font 'sans,13' background 'white'
+set terminal pngcairo size 945,735 font 'sans,13' background 'white'
 set output '$results/plate.png'
 set multiplot layout 3,3 margins 0,1,0,0.97 spacing 0,0.01
 unset key

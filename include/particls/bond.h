@@ -146,6 +146,8 @@ typedef struct pls_bonds_figures
     double energy_broken; ///< that bonds held when they broke [J]
 } pls_bonds_figures;
 pls_status pls_world_bonds_figures(const struct pls_world *world, pls_bonds_id id, pls_bonds_figures *figures);
+/// Numbers of all sets together; energies are left out (0).
+pls_bonds_figures pls_world_all_bonds(const struct pls_world *world);
 /// Part of its bonds that a body has lost in a set: 0 whole, 1 none left; NaN when the body is no point of it.
 double pls_world_bonds_damage(const struct pls_world *world, pls_bonds_id id, pls_body_id body);
 /// Break the bonds of a set that cross a triangle (2D: a segment a-b) now: a crack there from the start. Returns in `cut` how many, of either direction.

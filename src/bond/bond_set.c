@@ -20,6 +20,7 @@ void pls_bond_set_free(pls_bond_set *set)
     pls_release(&set->torque);
     pls_links_free(&set->links);
     pls_release(&set->overlong);
+    pls_release(&set->number);
     pls_release(&set->point_of);
     memset(set, 0, sizeof *set);
 }
@@ -35,8 +36,8 @@ size_t pls_bond_set_bytes(const pls_bond_set *set)
                               : 0;
     return linear + pls_links_bytes(&set->links, f) + (set->torque ? f->count * sizeof *set->torque : 0) +
            slots * (sizeof *f->partner + sizeof *f->length) +
-           f->count *
-               (sizeof *f->point + sizeof *f->start + sizeof *f->size + sizeof *set->broken + sizeof *set->force + sizeof *set->overlong) +
+           f->count * (sizeof *f->point + sizeof *f->start + sizeof *f->size + sizeof *set->broken + sizeof *set->force +
+                       sizeof *set->overlong + sizeof *set->number) +
            f->ghosts * sizeof *f->ghost + set->numbers * sizeof *set->point_of;
 }
 
@@ -212,6 +213,8 @@ static pls_status allocate(pls_bond_set *set)
     PLS_TRY(pls_allocate(&set->overlong, f->count, sizeof *set->overlong, "points of bonds"));
     for (size_t p = 0; p < f->count; ++p)
         if (f->point[p].number >= set->numbers) set->numbers = (size_t)f->point[p].number + 1;
+    PLS_TRY(pls_allocate(&set->number, f->count, sizeof *set->number, "points of bonds"));
+    for (size_t p = 0; p < f->count; ++p) set->number[p] = f->point[p].number;
     PLS_TRY(pls_allocate(&set->point_of, set->numbers, sizeof *set->point_of, "points of bonds"));
     for (size_t n = 0; n < set->numbers; ++n) set->point_of[n] = PLS_NO_POINT;
     for (size_t p = 0; p < f->count; ++p) set->point_of[f->point[p].number] = (uint32_t)p;
@@ -278,7 +281,7 @@ void pls_bond_take_places(pls_bond_set *set, const pls_bodies *bodies, size_t fi
     }
     for (size_t p = first; p < last; ++p)
     {
-        const uint32_t number = set->family.point[p].number, row = number < bodies->numbers ? bodies->row_of[number] : PLS_NO_ROW;
+        const uint32_t number = set->number[p], row = number < bodies->numbers ? bodies->row_of[number] : PLS_NO_ROW;
         if (row == PLS_NO_ROW) continue; // taken out of the world; all its bonds are broken
         const pls_body_place *place = &bodies->place[row];
         set->row[p][0] = place->x, set->row[p][1] = place->y, set->row[p][2] = place->z;

@@ -47,6 +47,7 @@ typedef struct pls_bond_set
     double (*torque)[4]; ///< likewise, of pair laws [N m]
     uint8_t *overlong;   ///< per point: bonds of it are stretched too far
     bool any_overlong;
+    uint32_t *number;   ///< of each point's body: of what `family` has of it, all that a step asks for
     uint32_t *point_of; ///< by number: its point, or PLS_NO_POINT
     size_t numbers;
     size_t gone;      ///< broken bonds of either direction

@@ -600,6 +600,17 @@ pls_status pls_world_bonds_figures(const pls_world *world, pls_bonds_id id, pls_
     return PLS_OK;
 }
 
+pls_bonds_figures pls_world_all_bonds(const pls_world *world)
+{
+    pls_bonds_figures sum = {0};
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        const pls_bond_set *set = &world->bond[s];
+        sum.points += set->family.count, sum.bonds += set->family.bonds, sum.broken += set->gone, sum.bytes += pls_bond_set_bytes(set);
+    }
+    return sum;
+}
+
 double pls_world_bonds_damage(const pls_world *world, pls_bonds_id id, pls_body_id body)
 {
     const uint32_t number = body.index1 - 1;

@@ -13,6 +13,7 @@ PARTICLS_ISA=v2 "${run[@]}" --threads 2 >v2.json
 "$PARTICLS_BUILD/bench/polyhedra" --bodies 8 --steps 10 --faces point --state heap >polyhedra.json
 "$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 >bonds.json
 PARTICLS_ISA=v2 OMP_NUM_THREADS=2 "$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 >bonds2.json
+PARTICLS_ISA=v3 OMP_NUM_THREADS=2 "$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 --law beam >beams2.json
 "$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 --law beam >beams.json
 "${run[@]}" --lammps-data packing.data >variables
 
@@ -20,7 +21,7 @@ PARTICLS_ISA=v2 OMP_NUM_THREADS=2 "$PARTICLS_BUILD/bench/peridynamics" --side 8 
 # at the surface and towards the walls it has fewer.
 python3 - <<'PYTHON' || fail "the JSON is not as it should be"
 import json
-best, v2, broad, query, polyhedra, bonds, bonds2, beams = (json.load(open(name + ".json")) for name in ("best", "v2", "broad", "query", "polyhedra", "bonds", "bonds2", "beams"))
+best, v2, broad, query, polyhedra, bonds, bonds2, beams, beams2 = (json.load(open(name + ".json")) for name in ("best", "v2", "broad", "query", "polyhedra", "bonds", "bonds2", "beams", "beams2"))
 assert best["counts"] == [9, 10, 12] and best["bodies"] == 1080 and best["steps"] == 50 and best["threads"] == 1, best
 assert v2["threads"] == 2 and v2["state_hash"] == best["state_hash"], (best, v2)
 assert 4 * 1080 < best["touching"] < 6.5 * 1080 and best["listed"] >= best["touching"], best
@@ -34,6 +35,7 @@ assert polyhedra["bodies"] == 8 and polyhedra["particle_steps_per_s"] > 0, polyh
 steps = [(i, j, k) for i in range(-3, 4) for j in range(-3, 4) for k in range(-3, 4) if 0 < i * i + j * j + k * k <= 9]
 assert bonds["bonds"] == sum((8 - abs(i)) * (8 - abs(j)) * (8 - abs(k)) for i, j, k in steps) and beams["bonds"] == 6 * 7 * 64, (bonds, beams)
 assert bonds["energy"] > 0 and beams["energy"] > 0 and bonds2["threads"] == 2 and bonds2["state_hash"] == bonds["state_hash"], (bonds, bonds2)
+assert beams2["state_hash"] == beams["state_hash"], (beams, beams2)
 # The heap: grains of 28 corners, no further apart than the longest diameter, 1 m.
 lines = [list(map(float, line.split())) for line in open("heap")]
 assert len(lines) == 9 and len(lines[0]) == 6, lines[0]

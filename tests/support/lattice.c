@@ -43,6 +43,8 @@ static void join(lattice *b)
     def.correction = b->plan.correction;
     def.plane = b->plan.plane;
     def.critical_stretch = b->plan.critical_stretch;
+    const double beam[] = {0.4 * b->plan.spacing, 0.1 * b->plan.bulk, 0.1 * b->plan.bulk}; // radius and strengths
+    if (def.ops->pair) def.values = beam;
     MUST(pls_world_add_bonds(b->scene.world, &def, &b->bonds));
 }
 
