@@ -19,12 +19,12 @@ skin=${LAMMPS_SKIN:-0.015}
 if [ "$quick" = 1 ]; then
     rounds=${ROUNDS:-1}
     results=$here/results/quick page=$results/performance.md figures=$results/figures
-    query_pairs=20 query_steps=10 settling=500 settling_steps=20 yade_grains=27 yade_steps=5
+    query_pairs=20 query_steps=10 settling=500 settling_steps=20 yade_grains=27 yade_steps=5 bond_side=12 bond_steps=20
     end=0.05 large=200000 large_steps=20 threads_steps=500 scaling_work=8000000 sizes=(1000 10000 100000 1000000)
 else
     rounds=${ROUNDS:-3}
     results=$here/results page=$root/docs/performance.md figures=$root/docs/figures
-    query_pairs=500 query_steps=100 settling=4000 settling_steps=400 yade_grains=216 yade_steps=20
+    query_pairs=500 query_steps=100 settling=4000 settling_steps=400 yade_grains=216 yade_steps=20 bond_side=40 bond_steps=300
     end=0.5 large=1000000 large_steps=200 threads_steps=4000 scaling_work=36000000 sizes=(1000 3000 10000 30000 100000 300000 1000000)
 fi
 
@@ -34,7 +34,8 @@ compression=$build/bench/compression
 broad_phase=$build/bench/broad_phase
 contact_query=$build/bench/contact_query
 polyhedra=$build/bench/polyhedra
-for program in "$compression" "$broad_phase" "$contact_query" "$polyhedra"; do
+peridynamics=$build/bench/peridynamics
+for program in "$compression" "$broad_phase" "$contact_query" "$polyhedra" "$peridynamics"; do
     [ -x "$program" ] || { echo "bench.sh: $program is missing: run make build first" >&2; exit 2; }
 done
 for tool in gnuplot python3; do
@@ -189,6 +190,31 @@ for ((round = 1; round <= rounds; ++round)); do
     yade_polyhedra "$round" "$scratch/settled"
     ours settling "$round" particls-point "$polyhedra" --bodies $yade_grains --steps $((settling_steps * 10)) --faces point
     ours settling "$round" particls-many "$polyhedra" --bodies $settling --steps $settling_steps --faces point
+done
+
+# Bonds: each instruction set and LAMMPS in turn on one thread; then the same on two, and other laws. LAMMPS takes twenty times as long, so it does a tenth of the steps.
+lammps_bonds() # <round>
+{
+    local seconds points
+    [ $peer = 1 ] || return 0
+    if ! (cd "$scratch" && OMP_NUM_THREADS=1 lmp -in "$here/peers/peridynamics.lammps.in" -log none -var side $bond_side -var steps $((bond_steps / 10)) >lammps.out 2>errors); then
+        tail -5 "$scratch/lammps.out" >>"$scratch/errors"
+        failed "bonds, round $1, LAMMPS"
+        return 0
+    fi
+    read -r seconds points < <(sed -n 's/^Loop time of \([0-9.e+]*\) on 1 procs for [0-9]* steps with \([0-9]*\) atoms.*/\1 \2/p' "$scratch/lammps.out" | tail -1) || true
+    if [ -z "${seconds:-}" ]; then
+        failed "bonds, round $1, LAMMPS: no loop time in its output"
+        return 0
+    fi
+    awk -v s="$seconds" -v n="$((bond_steps / 10))" -v points="$points" 'BEGIN { printf "{\"points\": %d, \"steps\": %d, \"threads\": 1, \"wall_s\": %.6g, \"step_ms\": %.6g}\n", points, n, s, 1e3 * s / n }' >"$scratch/out"
+    record bonds "$1" lammps <"$scratch/out"
+}
+for ((round = 1; round <= rounds; ++round)); do
+    for isa in "${isas[@]}"; do ours bonds "$round" "particls-$isa" env PARTICLS_ISA="$isa" OMP_NUM_THREADS=1 "$peridynamics" --side $bond_side --steps $bond_steps; done
+    lammps_bonds "$round"
+    ours bonds "$round" particls-2 env OMP_NUM_THREADS=2 "$peridynamics" --side $bond_side --steps $bond_steps
+    for law in bond_based beam; do ours bonds "$round" "$law" env OMP_NUM_THREADS=1 "$peridynamics" --side $bond_side --steps $bond_steps --law $law; done
 done
 
 version=$(sed -n 's/^#define PLS_VERSION_TEXT *"\(.*\)"/\1/p' "$root/include/particls/types.h")

@@ -176,6 +176,26 @@ def settling(results):
     table(["", "grains", "rounds", "contacts per grain", "particle-steps/s", "us per contact and step", "ratio (median)", "least to most"], rows)
 
 
+def bonds(results):
+    """Steps per second of the cube of a linear peridynamic solid, and of other laws on the same points."""
+    lines = load(results, "bonds")
+    names = {"particls-v4": "particls, AVX-512", "particls-v3": "particls, AVX2", "particls-best": "particls", "lammps": "LAMMPS, peri/lps", "particls-2": "particls, two threads",
+             "bond_based": "particls, bond_based", "beam": "particls, beams of nearest neighbours"}
+    def rates(program):
+        return {line["round"]: 1e3 / line["step_ms"] for line in lines if line["program"] == program}
+    base, rows = rates("lammps"), []
+    for program in programs(lines):
+        own = [line for line in lines if line["program"] == program]
+        bonds = own[0].get("bonds")
+        rows.append([names.get(program, program), f"{own[0]['points']:,}", f"{bonds:,}" if bonds else "", str(len(own)), f"{statistics.median(line['step_ms'] for line in own):.2f}",
+                     f"{statistics.median(line['bonds_per_s'] for line in own) / 1e6:,.0f}" if bonds else "", f"{own[0]['bytes_per_bond']:.1f}" if bonds else ""]
+                    + (["1", ""] if program == "lammps" else ["", ""] if program in ("bond_based", "beam") else ratio(rates(program), base)))
+    table(["", "points", "bonds, of either direction", "rounds", "ms per step", "million bonds/s", "bytes per bond", "ratio (median)", "least to most"], rows)
+    one = rates("particls-v4") or rates("particls-v3") or rates("particls-best")
+    median, span = ratio(rates("particls-2"), one)
+    print(f"Two threads against one: {median} ({span}).\n")
+
+
 MACHINES = ("processor", "date", "particls", "16,500 spheres, AVX-512 / LAMMPS", "AVX2 / LAMMPS", "a million, AVX-512 / LAMMPS", "two threads / one, 16,500",
             "polyhedra / Yade")
 
@@ -257,6 +277,8 @@ def main():
     contact_queries(results)
     print("## Polyhedra that settle\n\nGrains of 28 corners with the volume law, falling into a box, one thread, time of the processor; Yade is given the same grains at the same places.\n")
     settling(results)
+    print("## Bonds\n\nA cube of 40 points along each edge, horizon 3.015 spacings, being pulled apart; LAMMPS does the same job. Beams join nearest neighbours only.\n")
+    bonds(results)
     print(notes.read_text(), end="")
     return 1 if different else 0
 

@@ -110,6 +110,9 @@ static pls_status print_memory(pls_world *world)
     PLS_TRY(pls_world_get_figures(world, &figures));
     char total[32];
     printf("contacts           %9zu touching, %zu pairs listed\n", figures.touching, figures.listed);
+    if (figures.bonds > 0)
+        printf("bonds              %9zu, of which %zu are broken, %.1f bytes each way\n", figures.bonds, figures.bonds_broken,
+               0.5 * (double)figures.bond_bytes / (double)figures.bonds);
     printf("memory             %s", cli_bytes(total, (double)pls_memory_in_use()));
     if (figures.bodies > 0) printf(", %.0f bytes per body", (double)figures.body_bytes / (double)figures.bodies);
     if (figures.listed > 0) printf(", %.0f bytes per pair", (double)figures.contact_bytes / (double)figures.listed);
@@ -132,8 +135,11 @@ static pls_status print_step(pls_world *world, double end)
     else
     {
         printf("stable step        %.6g s, limited by the %s at body %u with %d contacts (M^-1 K %.4g 1/s^2, M^-1 C %.4g 1/s)\n",
-               estimate.dt, estimate.damping_limits ? "dashpots" : "springs", estimate.body, estimate.contacts, estimate.stiffness,
-               estimate.damping);
+               estimate.dt,
+               estimate.damping_limits                     ? "dashpots"
+               : estimate.bonds > 0.5 * estimate.stiffness ? "bonds"
+                                                           : "springs",
+               estimate.body, estimate.contacts, estimate.stiffness, estimate.damping);
         if (pls_world_dt(world) > estimate.dt)
             printf("                   That is a bound from single bodies; the step passes the finer test of the whole, or allow_unstable "
                    "is set\n");

@@ -26,7 +26,10 @@ static void print_fields_of(pls_table_kind table)
         printf("| `%s` | %s", field[k].name, type_names[field[k].type]);
         if (field[k].components > 1) printf(" x %d", field[k].components);
         printf(" | %s | %s | %s | %s |\n", field[k].unit, field[k].flags & PLS_FIELD_PERSISTS ? "yes" : "no",
-               field[k].flags & PLS_FIELD_FRAME ? "yes" : "", field[k].meaning);
+               field[k].flags & PLS_FIELD_FRAME    ? "yes"
+               : field[k].flags & PLS_FIELD_BONDED ? "with bonds"
+                                                   : "",
+               field[k].meaning);
     }
 }
 

@@ -58,6 +58,7 @@ typedef struct pls_collection
     double coordination; ///< mean number of contacts of a bounded body
     uint64_t contacts;
     double energy_kinetic, energy_rotation, energy_normal, energy_shear, energy_potential, energy_damped, energy_slid; ///< [J]
+    double energy_bonds, energy_broken; ///< of the bodies' families: stored in bonds; what bonds held when they broke [J]
     pls_vec3 momentum, angular_momentum;
     double porosity;
     uint64_t bodies; ///< bounded ones

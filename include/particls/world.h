@@ -14,6 +14,7 @@
 #ifndef PARTICLS_WORLD_H
 #define PARTICLS_WORLD_H
 
+#include <particls/bond.h>
 #include <particls/contact.h>
 #include <particls/field.h>
 #include <particls/force.h>
@@ -161,6 +162,7 @@ typedef struct pls_step_estimate
     uint32_t body;       ///< persistent number of the limiting body
     int contacts;        ///< contacts counted at that body
     bool damping_limits; ///< the dashpots, not the springs, set the limit
+    double bonds;        ///< of `stiffness`, that of the limiting body's bonds [1/s^2]
 } pls_step_estimate;
 pls_status pls_world_stable_step(pls_world *world, pls_step_estimate *estimate);
 /// @}
@@ -213,6 +215,9 @@ typedef struct pls_world_figures
     double energy_kinetic, energy_rotation, energy_normal, energy_shear, energy_potential; ///< [J]
     double energy_damped, energy_slid;   ///< dissipated since the start by dashpots and by sliding [J]
     pls_vec3 momentum, angular_momentum; ///< of bodies with mass, angular about the origin [kg m/s], [kg m^2/s]
+    double energy_bonds, energy_broken;  ///< stored in bonds; what bonds held when they broke [J]
+    size_t bonds, bonds_broken;          ///< pairs of bodies that a bond joins or joined; those where it is broken
+    size_t bond_bytes;                   ///< held by bonds
 } pls_world_figures;
 
 /// Counts of contact detection between bodies that are not spheres, since the first step.

@@ -396,16 +396,47 @@ pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, co
     for (size_t c = 0; domain->any_periodic && c < list->wall_first; ++c)
         for (int a = 0; a < 3; ++a) list->image_reach[a] = fmax(list->image_reach[a], fabs((double)list->shift[c][a]) + 1.0);
     list->skin = skin;
+    list->holds_some = false;
     list->drift = list->image_drift = 0.0;
     list->stale = false;
     ++list->builds;
     return PLS_OK;
 }
 
+pls_status pls_pair_list_hold(pls_pair_list *list, const pls_bodies *bodies, bool (*holds)(const void *context, uint32_t a, uint32_t b),
+                              const void *context)
+{
+    PLS_TRY(renew(&list->held, &list->held_capacity, list->count / 8 + 1, 1, "the pairs that bonds hold"));
+    const size_t bytes = list->wall_first / 8;
+    memset(list->held, 0, list->count / 8 + 1);
+    bool some = false;
+#pragma omp parallel for schedule(static) reduction(|| : some)
+    for (size_t k = 0; k < bytes; ++k)
+        for (size_t lane = 0; lane < 8; ++lane)
+        {
+            const uint32_t a = bodies->kind[list->row_i[8 * k + lane]].number, b = bodies->kind[list->row_j[8 * k + lane]].number;
+            if (!holds(context, a, b)) continue;
+            list->held[k] = (uint8_t)(list->held[k] | 1u << lane);
+            some = true;
+        }
+    list->holds_some = some;
+    return PLS_OK;
+}
+
+void pls_pair_list_let_go(pls_pair_list *list, uint32_t row_a, uint32_t row_b)
+{
+    if (!list->holds_some || row_a == PLS_NO_ROW || row_b == PLS_NO_ROW) return;
+    for (uint32_t k = list->pairs.start[row_a]; k < list->pairs.start[row_a + 1]; ++k)
+    {
+        const uint32_t c = list->pairs.entry[k] >> 1;
+        if (list->row_i[c] == row_b || list->row_j[c] == row_b) list->held[c >> 3] = (uint8_t)(list->held[c >> 3] & ~(1u << (c & 7)));
+    }
+}
+
 size_t pls_pair_list_bytes(const pls_pair_list *list)
 {
     return (list->row_i_capacity + list->row_j_capacity) * sizeof *list->row_i + list->shift_capacity * sizeof *list->shift +
-           list->touch_capacity + list->ended_capacity + list->moved_capacity * sizeof *list->moved +
+           list->touch_capacity + list->ended_capacity + list->held_capacity + list->moved_capacity * sizeof *list->moved +
            (list->history_capacity + list->slot_capacity + list->skew_capacity + list->shared_capacity) * sizeof(double) +
            (list->pairs.entry_capacity + list->walls.entry_capacity + list->near_capacity + 3 * list->group_capacity +
             list->fetch_start_capacity + list->fetch_row_capacity + list->place_capacity) *
@@ -428,6 +459,7 @@ void pls_pair_list_free(pls_pair_list *list)
     pls_release(&list->shift);
     pls_release(&list->touch);
     pls_release(&list->ended);
+    pls_release(&list->held);
     pls_release(&list->history);
     pls_release(&list->slot);
     pls_release(&list->pairs.start);

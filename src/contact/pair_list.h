@@ -86,7 +86,9 @@ typedef struct pls_pair_list
     size_t shift_capacity;
     uint8_t *touch; ///< bit k % 8 of byte k / 8: candidate k touched at the last step
     uint8_t *ended; ///< likewise: touched at the step before the last and no more at the last; their history still holds the spring
-    size_t touch_capacity, ended_capacity;
+    uint8_t *held;  ///< likewise: a bond holds the two bodies, so they do not touch; not used where no pair is held
+    bool holds_some;
+    size_t touch_capacity, ended_capacity, held_capacity;
     double *history; ///< of eight candidates at a time: eight values of the first number, eight of the second ...
     size_t history_capacity;
     double *
@@ -158,6 +160,11 @@ static inline void pls_pair_history_read(const pls_pair_list *list, const pls_pa
     const double *history = pls_pair_history(list, section, candidate);
     for (int h = 0; h < section->numbers; ++h) numbers[h] = history[8 * h];
 }
+/// Lanes of candidates c .. c + 7 that no bond holds.
+static inline unsigned pls_pair_free_lanes(const pls_pair_list *list, size_t c)
+{
+    return list->holds_some ? ~(unsigned)list->held[c >> 3] & 0xffu : 0xffu;
+}
 static inline bool pls_pair_touches(const pls_pair_list *list, size_t candidate)
 {
     return (list->touch[candidate >> 3] >> (candidate & 7)) & 1;
@@ -188,6 +195,11 @@ pls_status pls_pair_list_remember(const pls_pair_list *list, const pls_bodies *b
 /// NOT_FOUND names two materials without a law.
 pls_status pls_pair_list_build(pls_pair_list *list, const pls_bodies *bodies, const pls_domain *domain, const pls_law_table *laws,
                                pls_near_pairs *near, double skin, bool growing, const pls_contact_memory *memory);
+/// Note which pairs of balls bonds hold: `holds` is asked about two numbers.
+pls_status pls_pair_list_hold(pls_pair_list *list, const pls_bodies *bodies, bool (*holds)(const void *context, uint32_t a, uint32_t b),
+                              const void *context);
+/// The bodies in two rows are held no longer.
+void pls_pair_list_let_go(pls_pair_list *list, uint32_t row_a, uint32_t row_b);
 void pls_pair_list_free(pls_pair_list *list);
 size_t pls_pair_list_bytes(const pls_pair_list *list);
 /// Touching contacts now.

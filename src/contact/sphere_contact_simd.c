@@ -150,7 +150,7 @@ static inline __attribute__((always_inline)) void filter_pairs(pls_pair_list *li
             pls_columns4(row, d);
             now |= pls_vd_less(pls_vd_dot(d, d), d[3] * d[3]) << half;
         }
-        pick_touching(list, section, c, now & valid_lanes(block, k), work);
+        pick_touching(list, section, c, now & valid_lanes(block, k) & pls_pair_free_lanes(list, c), work);
     }
 }
 
@@ -780,6 +780,7 @@ static inline __attribute__((always_inline)) void work_whole(pls_pair_list *list
 #pragma GCC unroll 2
             for (size_t v = 0; v < 8; v += PLS_W) now |= measure_lanes(work, m + v, both_radii, plain) << v;
             if (k + 8 > block->count) now &= valid_lanes(block, k);
+            now &= pls_pair_free_lanes(&pairs, first + k);
             work->now[k >> 3] = (uint8_t)now;
             work->fresh[k >> 3] = (uint8_t)note_touching(list, section, first + k, now);
         }

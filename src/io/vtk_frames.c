@@ -59,7 +59,8 @@ static pls_status fill_bodies(pls_vtk *vtk, pls_world *world, const pls_frames_d
     for (size_t f = 0; f < count; ++f)
     {
         if (is_position(field[f].name)) continue;
-        if (!(field[f].flags & PLS_FIELD_FRAME) && !is_requested(def, field[f].name)) continue;
+        const unsigned usual = pls_world_has_bonds(world) ? PLS_FIELD_FRAME | PLS_FIELD_BONDED : PLS_FIELD_FRAME;
+        if (!(field[f].flags & usual) && !is_requested(def, field[f].name)) continue;
         PLS_TRY(add_field(vtk, PLS_VTK_POINT_DATA, world, rows->body, rows->body_count, "", field[f].name));
     }
     for (const char *const *name = pls_frame_wall_fields; rows->wall_count > 0 && *name; ++name)

@@ -91,6 +91,7 @@ enum pls_body_flags {
     X(double, damping_power)             \
     X(double, slid)                      \
     X(double, scale)                     \
+    X(float, damage)                     \
     X(pls_body_kind, kind)
 
 // X(name, type, components, flags, unit, column, row type, first member, meaning)
@@ -120,7 +121,8 @@ enum pls_body_flags {
     X("mass", PLS_F64, 1, PERSISTS, "kg", mass, pls_body_mass, mass, "mass")                                                     \
     X("inertia", PLS_F64, 3, PERSISTS, "kg m^2", mass, pls_body_mass, ix, "principal moments of inertia")                        \
     X("energy_slid", PLS_F64, 1, PERSISTS, "J", slid, double, , "half of the energy taken by sliding at its contacts")           \
-    X("scale", PLS_F64, 1, PERSISTS | FRAME, "", scale, double, , "multiplies the lengths of its shape")
+    X("scale", PLS_F64, 1, PERSISTS | FRAME, "", scale, double, , "multiplies the lengths of its shape")                         \
+    X("damage", PLS_F32, 1, BONDED, "", damage, float, , "part of its bonds that are broken")
 
 /// Zero-initialise; `pls_bodies_free` releases.
 typedef struct pls_bodies

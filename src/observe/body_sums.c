@@ -26,6 +26,8 @@ static void combine(pls_body_sums *to, const pls_body_sums *from)
     to->potential += from->potential;
     to->damped += from->damped;
     to->slid += from->slid;
+    to->bonds += from->bonds;
+    to->broken += from->broken;
     to->solid += from->solid;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -120,6 +122,11 @@ static void add_body(const pls_selection *selection, uint32_t row, bool with_sol
     sums->slid += bodies->slid[row];
     if (!bounded) return;
     sums->bounded += 1;
+    if (selection->bonds)
+    {
+        sums->bonds += selection->bonds->stored[bodies->kind[row].number];
+        sums->broken += selection->bonds->broken[bodies->kind[row].number];
+    }
     add_motion(selection, row, sums);
     add_bounds(&bodies->place[row], sums);
 }

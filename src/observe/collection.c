@@ -2,6 +2,7 @@
 
 #include <particls/observe.h>
 
+#include "base/alloc.h"
 #include "observe/sums.h"
 
 #include <string.h>
@@ -59,6 +60,8 @@ static void report_bodies(const pls_body_sums *sums, unsigned quantities, pls_co
         out->energy_potential = sums->potential;
         out->energy_damped = sums->damped;
         out->energy_slid = sums->slid;
+        out->energy_bonds = sums->bonds;
+        out->energy_broken = sums->broken;
     }
     if (quantities & PLS_MEASURE_MOMENTUM)
     {
@@ -86,6 +89,22 @@ static pls_status measure_contacts(const pls_world *world, const pls_selection *
     return status;
 }
 
+static pls_status measure_bodies(const pls_world *world, pls_selection *selection, unsigned quantities, pls_body_sums *sums)
+{
+    pls_bond_shares shares = {0};
+    pls_status status = PLS_OK;
+    if ((quantities & PLS_MEASURE_ENERGY) && pls_world_has_bonds(world))
+    {
+        status = pls_surroundings_bonds(&selection->around, &shares.stored, &shares.broken);
+        selection->bonds = &shares;
+    }
+    if (status == PLS_OK) status = pls_sum_bodies(selection, quantities & PLS_MEASURE_POROSITY, sums);
+    selection->bonds = NULL;
+    pls_release(&shares.stored);
+    pls_release(&shares.broken);
+    return status;
+}
+
 pls_status pls_measure_collection(const pls_world *world, const pls_collection_def *def, pls_collection *out)
 {
     pls_selection selection;
@@ -94,7 +113,7 @@ pls_status pls_measure_collection(const pls_world *world, const pls_collection_d
     memset(out, 0, sizeof *out);
     PLS_TRY(pls_select(world, def, &selection));
     PLS_TRY(measure_contacts(world, &selection, def->quantities, &contacts));
-    PLS_TRY(pls_sum_bodies(&selection, def->quantities & PLS_MEASURE_POROSITY, &bodies));
+    PLS_TRY(measure_bodies(world, &selection, def->quantities, &bodies));
 
     out->volume = averaging_volume(def, selection.around.domain, &bodies);
     report_contacts(&contacts, bodies.bounded, def->quantities, out);

@@ -56,7 +56,7 @@ static void put_tangent(column_sink *sink, const double tangent[3][3][3][3], int
     }
 }
 
-static void put_energies(column_sink *sink, const pls_collection *c)
+static void put_energies(column_sink *sink, const pls_collection *c, bool bonded)
 {
     put(sink, "energy_kinetic", "", "J", c->energy_kinetic);
     put(sink, "energy_rotation", "", "J", c->energy_rotation);
@@ -65,8 +65,10 @@ static void put_energies(column_sink *sink, const pls_collection *c)
     put(sink, "energy_potential", "", "J", c->energy_potential);
     put(sink, "energy_damped", "", "J", c->energy_damped);
     put(sink, "energy_slid", "", "J", c->energy_slid);
+    if (bonded) put(sink, "energy_bonds", "", "J", c->energy_bonds);
+    if (bonded) put(sink, "energy_broken", "", "J", c->energy_broken);
     double mechanical = c->energy_kinetic + c->energy_rotation + c->energy_normal + c->energy_shear + c->energy_potential;
-    put(sink, "energy_total", "", "J", mechanical + c->energy_damped + c->energy_slid);
+    put(sink, "energy_total", "", "J", mechanical + c->energy_damped + c->energy_slid + c->energy_bonds + c->energy_broken);
 }
 
 static void put_momentum(column_sink *sink, const pls_collection *c, int dimension)
@@ -80,7 +82,8 @@ static void put_momentum(column_sink *sink, const pls_collection *c, int dimensi
     }
 }
 
-static void each_column(column_sink *sink, const pls_collection *c, unsigned quantities, int dimension)
+/// `bonded`: there are bonds in the world.
+static void each_column(column_sink *sink, const pls_collection *c, unsigned quantities, int dimension, bool bonded)
 {
     if (quantities & PLS_MEASURE_STRESS) put_tensor(sink, "sigma", "Pa", c->stress, dimension);
     if (quantities & PLS_MEASURE_TANGENT) put_tangent(sink, c->tangent, dimension);
@@ -90,7 +93,7 @@ static void each_column(column_sink *sink, const pls_collection *c, unsigned qua
         put(sink, "coordination", "", "", c->coordination);
         put(sink, "contacts", "", "", (double)c->contacts);
     }
-    if (quantities & PLS_MEASURE_ENERGY) put_energies(sink, c);
+    if (quantities & PLS_MEASURE_ENERGY) put_energies(sink, c, bonded);
     if (quantities & PLS_MEASURE_MOMENTUM) put_momentum(sink, c, dimension);
     if (quantities & PLS_MEASURE_POROSITY) put(sink, "porosity", "", "", c->porosity);
     if (quantities & PLS_MEASURE_MASS)
@@ -107,22 +110,22 @@ static pls_status collection_values(void *context, pls_world *world, double *val
     pls_collection measured;
     PLS_TRY(pls_measure_collection(world, def, &measured));
     column_sink sink = {.values = values};
-    each_column(&sink, &measured, def->quantities, pls_world_dimension(world));
+    each_column(&sink, &measured, def->quantities, pls_world_dimension(world), pls_world_has_bonds(world));
     return PLS_OK;
 }
 
 static void collection_destroy(void *context) { pls_release(&context); }
 
 /// The names of the columns and a copy of the definition; `series` owns what was allocated, also when this fails.
-static pls_status make_columns(const pls_collection_def *def, int dimension, pls_series *series)
+static pls_status make_columns(const pls_collection_def *def, int dimension, bool bonded, pls_series *series)
 {
     const pls_collection nothing = {0};
     column_sink count = {0};
-    each_column(&count, &nothing, def->quantities, dimension);
+    each_column(&count, &nothing, def->quantities, dimension, bonded);
     PLS_TRY(pls_allocate(&series->columns, count.count, sizeof *series->columns, "columns of a collection"));
     series->column_count = count.count;
     column_sink sink = {.columns = series->columns};
-    each_column(&sink, &nothing, def->quantities, dimension);
+    each_column(&sink, &nothing, def->quantities, dimension, bonded);
 
     pls_collection_def *copy = NULL;
     PLS_TRY(pls_allocate(&copy, 1, sizeof *copy, "a collection"));
@@ -138,7 +141,7 @@ pls_status pls_series_collection(pls_world *world, const pls_collection_def *def
     *series = (pls_series){0};
     pls_selection selection;
     PLS_TRY(pls_select(world, def, &selection)); // what is wrong with the definition is said now, not at the first look
-    pls_status status = make_columns(def, pls_world_dimension(world), series);
+    pls_status status = make_columns(def, pls_world_dimension(world), pls_world_has_bonds(world), series);
     if (status != PLS_OK) pls_series_free(series);
     return status;
 }

@@ -10,6 +10,12 @@
 
 #include <particls/observe.h>
 
+/// Energies of bonds by numbers of bodies; both null without bonds [J].
+typedef struct pls_bond_shares
+{
+    double *stored, *broken;
+} pls_bond_shares;
+
 /// Which bodies and contacts a collection holds.
 typedef struct pls_selection
 {
@@ -18,6 +24,7 @@ typedef struct pls_selection
     bool include_walls;
     bool box; ///< only what lies in `lower`..`upper`
     pls_vec3 lower, upper;
+    const pls_bond_shares *bonds; ///< null: not asked for
 } pls_selection;
 
 /// Whether `point`, or one of its periodic images, lies in the selection's box; true without a box. The lower faces belong to the box,
@@ -34,6 +41,7 @@ typedef struct pls_body_sums
     double mass;                         ///< of bounded bodies with mass [kg]
     double kinetic, rotation, potential; ///< of bodies with mass [J]
     double damped, slid;                 ///< the bodies' halves of what their contacts dissipated [J]
+    double bonds, broken;                ///< stored in their bonds; what these held when they broke [J]
     double momentum[3];                  ///< [kg m/s]
     double angular_momentum[3];          ///< about the origin [kg m^2/s]
     double solid;                        ///< volume of bounded bodies, cut at the box [m^3]

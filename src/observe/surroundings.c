@@ -2,7 +2,8 @@
 
 #include "observe/surroundings.h"
 
-#include "step/world.h"
+#include "base/alloc.h"
+#include "step/bonds.h"
 
 pls_surroundings pls_surroundings_of(const pls_world *world)
 {
@@ -26,6 +27,15 @@ pls_solid pls_surroundings_solid(const pls_surroundings *around, uint32_t row)
         .radius = place->radius,
         .volume = shape->volume * scale * scale * (dimension == 3 ? scale : 1),
     };
+}
+
+pls_status pls_surroundings_bonds(const pls_surroundings *around, double **stored, double **broken)
+{
+    *stored = *broken = NULL;
+    PLS_TRY(pls_allocate(stored, around->bodies->numbers, sizeof **stored, "energies of bonds"));
+    PLS_TRY(pls_allocate(broken, around->bodies->numbers, sizeof **broken, "energies of bonds"));
+    pls_bonds_energies(around->world, *stored, *broken);
+    return PLS_OK;
 }
 
 double pls_surroundings_potential(const pls_surroundings *around, uint32_t row)

@@ -19,6 +19,8 @@ typedef struct pls_surroundings
 pls_surroundings pls_surroundings_of(const pls_world *world);
 /// The bounded body in memory row `row` as a solid.
 pls_solid pls_surroundings_solid(const pls_surroundings *around, uint32_t row);
+/// Energies of bonds by numbers of bodies, in two arrays that the caller releases [J].
+pls_status pls_surroundings_bonds(const pls_surroundings *around, double **stored, double **broken);
 /// Potential energy of the body in row `row` in all body forces that have one [J].
 double pls_surroundings_potential(const pls_surroundings *around, uint32_t row);
 

@@ -68,8 +68,10 @@ static pls_status add_counts(pls_text *json, pls_run *run)
     double bodies = (double)pls_world_body_count(world);
     double steps = (double)(pls_world_step_number(world) - run->first_step);
     double wall = pls_clock() - run->wall_start;
-    PLS_TRY(pls_text_print(json, "  \"bodies\": %zu,\n  \"contacts\": %zu,\n  \"bonds\": 0,\n  \"steps\": %" PRIu64 ",\n  ",
-                           pls_world_body_count(world), pls_world_contact_count(world), pls_world_step_number(world)));
+    const pls_bonds_figures bonds = pls_world_all_bonds(world);
+    PLS_TRY(pls_text_print(
+        json, "  \"bodies\": %zu,\n  \"contacts\": %zu,\n  \"bonds\": %zu,\n  \"bonds_broken\": %zu,\n  \"steps\": %" PRIu64 ",\n  ",
+        pls_world_body_count(world), pls_world_contact_count(world), bonds.bonds / 2, bonds.broken / 2, pls_world_step_number(world)));
     PLS_TRY(add_named_number(json, "time", pls_world_time(world), ",\n  "));
     PLS_TRY(add_named_number(json, "dt", pls_world_dt(world), ",\n  "));
     PLS_TRY(add_named_number(json, "wall_s", wall, ",\n  "));
@@ -110,7 +112,9 @@ static pls_status add_figures(pls_text *json, pls_run *run, pls_status outcome)
     PLS_TRY(add_named_number(json, "shear", f.energy_shear, ", "));
     PLS_TRY(add_named_number(json, "potential", f.energy_potential, ", "));
     PLS_TRY(add_named_number(json, "damped", f.energy_damped, ", "));
-    PLS_TRY(add_named_number(json, "slid", f.energy_slid, "},\n"));
+    PLS_TRY(add_named_number(json, "slid", f.energy_slid, ", "));
+    PLS_TRY(add_named_number(json, "bonds", f.energy_bonds, ", "));
+    PLS_TRY(add_named_number(json, "broken", f.energy_broken, "},\n"));
     PLS_TRY(add_named_vector(json, "momentum", f.momentum));
     return add_named_vector(json, "angular_momentum", f.angular_momentum);
 }

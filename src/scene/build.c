@@ -266,6 +266,7 @@ static pls_status build_all(pls_builder *b)
     PLS_TRY(for_each_pair(b, check_solver));
     PLS_TRY(for_each_pair(b, set_law));
     PLS_TRY(pls_build_bodies(b));
+    PLS_TRY(pls_build_bonds(b));
     PLS_TRY(pls_build_forces(b));
     PLS_TRY(pls_build_states(b));
     for (size_t k = 0; k < b->scene->material_count; ++k) PLS_TRY(bind_material(b, k));

@@ -28,6 +28,9 @@ pls_status pls_build_bodies(pls_builder *b);
 /// Body of a state: the index within its entry, checked.
 pls_status pls_build_state_body(const pls_builder *b, const pls_scene_state *state, size_t copy, size_t *index);
 
+/// build_bonds.c
+pls_status pls_build_bonds(const pls_builder *b);
+
 /// build_formulas.c: functions of time, place and states for the world to call, and their contexts.
 /// Value of a node over t and states at t = 0 (a plain number is itself), checked against the range of `key`.
 pls_status pls_build_initial_value(const pls_builder *b, const pls_key *key, const pls_node *node, double *value);

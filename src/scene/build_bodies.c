@@ -12,6 +12,7 @@ typedef struct entry_plan
     pls_formula *velocity;  ///< initial velocities over x, y, z; null when constant
     pls_formula *motion;    ///< prescribed motion over t; null when constant
     const pls_node *driven; ///< the motion section, null if there is none
+    double density;         ///< of the material at the start, times the thickness; NaN if not given
 } entry_plan;
 
 // ---------------------------------------------------------------------------------------------------------------------------------------
@@ -149,12 +150,26 @@ static pls_status add_body(pls_builder *b, const entry_plan *plan, const pls_poi
     def.position = points->position[k];
     if (points->scale) def.scale = points->scale[k];
     if (points->orientation) def.orientation = points->orientation[k];
+    if (points->volume && isnan(def.mass)) def.mass = plan->density * points->volume[k];
     def.orientation =
         pls_quat_multiply(def.orientation, shape->made->principal); // scenes turn the shape's own frame, worlds its principal axes
     PLS_TRY(initial_velocity(plan, points, k, &def));
     uniform_inertia(shape->made, &def);
     if (plan->motion) PLS_TRY(pls_build_motion_context(b, plan->driven, plan->motion, &def.motion));
     return pls_world_add_body(b->world, &def, id);
+}
+
+static pls_status plan_density(const pls_builder *b, entry_plan *plan)
+{
+    size_t count;
+    const pls_key *key = pls_schema_keys("material", &count);
+    while (strcmp(key->name, "density") != 0) ++key;
+    const pls_node *node = pls_node_get(b->scene->materials[plan->body->material].node, key->name);
+    plan->density = NAN;
+    if (!node) return PLS_OK;
+    PLS_TRY(pls_build_initial_value(b, key, node, &plan->density));
+    if (b->scene->dimension == 2) plan->density *= b->scene->thickness;
+    return PLS_OK;
 }
 
 static pls_status plan_entry(const pls_builder *b, entry_plan *plan)
@@ -166,6 +181,7 @@ static pls_status plan_entry(const pls_builder *b, entry_plan *plan)
     plan->def.scale = pls_scene_number(node, "scale", 1.0);
     plan->def.mass = pls_scene_number(node, "mass", NAN);
     if (pls_node_get(node, "inertia")) plan->def.inertia = pls_scene_spin(node, "inertia");
+    PLS_TRY(plan_density(b, plan));
     PLS_TRY(plan_motion(b, plan));
     return plan_velocity(b, plan);
 }

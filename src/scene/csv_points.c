@@ -22,11 +22,12 @@ typedef enum column {
     COLUMN_QX,
     COLUMN_QY,
     COLUMN_QZ,
+    COLUMN_VOLUME,
     COLUMN_COUNT
 } column;
 
 static const char *const names[COLUMN_COUNT] = {"x",  "y",  "z",  "radius", "scale", "vx", "vy", "vz",
-                                                "wx", "wy", "wz", "qw",     "qx",    "qy", "qz"};
+                                                "wx", "wy", "wz", "qw",     "qx",    "qy", "qz", "volume"};
 
 typedef struct table
 {
@@ -117,7 +118,7 @@ static pls_status read_row(const table *t, char *line, double values[COLUMN_COUN
         double *value = &values[t->kind[k]];
         if (!pls_parse_double(field, value) || !isfinite(*value))
             return pls_fail(PLS_SCENE, "%s:%d: '%.64s' in column '%s' is not a number", t->path, t->line, field, name);
-        bool size = t->kind[k] == COLUMN_RADIUS || t->kind[k] == COLUMN_SCALE;
+        bool size = t->kind[k] == COLUMN_RADIUS || t->kind[k] == COLUMN_SCALE || t->kind[k] == COLUMN_VOLUME;
         if (size && !(*value > 0.0))
             return pls_fail(PLS_SCENE, "%s:%d: '%s' must be greater than 0, not %s", t->path, t->line, name, field);
     }
@@ -133,6 +134,7 @@ static pls_status allocate_rows(const table *t, pls_points *points, size_t rows)
     bool turn = t->has[COLUMN_QW] || t->has[COLUMN_QX] || t->has[COLUMN_QY] || t->has[COLUMN_QZ];
     PLS_TRY(pls_allocate(&points->position, rows, sizeof *points->position, "places of bodies"));
     if (size) PLS_TRY(pls_allocate(&points->scale, rows, sizeof *points->scale, "sizes of bodies"));
+    if (t->has[COLUMN_VOLUME]) PLS_TRY(pls_allocate(&points->volume, rows, sizeof *points->volume, "volumes of points"));
     if (velocity) PLS_TRY(pls_allocate(&points->velocity, rows, sizeof *points->velocity, "velocities of bodies"));
     if (spin) PLS_TRY(pls_allocate(&points->angular_velocity, rows, sizeof *points->angular_velocity, "velocities of bodies"));
     if (turn) PLS_TRY(pls_allocate(&points->orientation, rows, sizeof *points->orientation, "orientations of bodies"));
@@ -147,6 +149,7 @@ static pls_status keep_row(const table *t, const double *v, pls_points *points, 
         points->scale[row] = t->has[COLUMN_RADIUS] ? v[COLUMN_RADIUS] / pls_points_radius(t->scene, t->body, row) : v[COLUMN_SCALE] * scale;
     if (points->velocity) points->velocity[row] = pls_vec(v[COLUMN_VX], v[COLUMN_VY], v[COLUMN_VZ]);
     if (points->angular_velocity) points->angular_velocity[row] = pls_vec(v[COLUMN_WX], v[COLUMN_WY], v[COLUMN_WZ]);
+    if (points->volume) points->volume[row] = v[COLUMN_VOLUME];
     if (!points->orientation) return PLS_OK;
     pls_quat q = {v[COLUMN_QW], v[COLUMN_QX], v[COLUMN_QY], v[COLUMN_QZ]};
     if (!(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z > 0.0))

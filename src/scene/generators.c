@@ -18,6 +18,7 @@ void pls_points_free(pls_points *points)
     pls_release(&points->angular_velocity);
     pls_release(&points->orientation);
     pls_release(&points->choice);
+    pls_release(&points->volume);
     points->count = 0;
 }
 
@@ -183,6 +184,7 @@ static pls_status make_by_kind(const pls_scene *scene, const pls_scene_body *bod
     if (strcmp(kind, "lattice") == 0) return make_lattice(scene, section, diameter, points);
     if (strcmp(kind, "hex_pack") == 0) return make_hex_pack(scene, section, diameter, points);
     if (strcmp(kind, "random") == 0) return pls_points_random(scene, body, section, points);
+    if (strcmp(kind, "fill") == 0) return pls_points_fill(scene, section, points);
     if (strcmp(kind, "csv") == 0) return pls_points_csv(scene, body, section, points);
     return make_points(section, points);
 }

@@ -1,4 +1,4 @@
-// generators.h -- where the bodies of an entry are: lattice, hexagonal packing, random packing, table, list.
+// generators.h -- where the bodies of an entry are: lattice, hexagonal packing, random packing, table, list, points that fill a region.
 #ifndef PLS_SCENE_GENERATORS_H
 #define PLS_SCENE_GENERATORS_H
 
@@ -14,6 +14,7 @@ typedef struct pls_points
     pls_vec3 *angular_velocity; ///< [rad/s]
     pls_quat *orientation;
     uint32_t *choice; ///< which of the entry's shapes
+    double *volume;   ///< of points of a continuum [m^3], in 2D their area [m^2]: their mass by the density
 } pls_points;
 
 /// The bodies of an entry: those of `place`, or the one at `position`.
@@ -29,6 +30,8 @@ double pls_points_radius(const pls_scene *scene, const pls_scene_body *body, siz
 
 /// random_pack.c: `section` is the resolved `random`.
 pls_status pls_points_random(const pls_scene *scene, const pls_scene_body *body, const pls_node *section, pls_points *points);
+/// fill_points.c
+pls_status pls_points_fill(const pls_scene *scene, const pls_node *fill, pls_points *points);
 /// csv_points.c
 pls_status pls_points_csv(const pls_scene *scene, const pls_scene_body *body, const pls_node *csv, pls_points *points);
 

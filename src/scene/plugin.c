@@ -157,11 +157,13 @@ pls_status pls_scene_load_builtins(pls_scene *scene)
 {
     scene->shape_ops.what = "shape";
     scene->law_ops.what = "contact law";
+    scene->bond_ops.what = "bond law";
     scene->force_ops.what = "force";
     scene->observer_ops.what = "observer";
     host door = open_door(scene);
     for (const pls_shape_ops *const *ops = pls_builtin_shapes(); *ops; ++ops) PLS_TRY(add_shape(&door.host, *ops));
     for (const pls_law_ops *const *ops = pls_builtin_laws(); *ops; ++ops) PLS_TRY(add_law(&door.host, *ops));
+    for (const pls_bond_ops *const *ops = pls_builtin_bonds(); *ops; ++ops) PLS_TRY(pls_registry_add(&scene->bond_ops, (*ops)->name, *ops));
     return PLS_OK;
 }
 

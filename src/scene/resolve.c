@@ -464,6 +464,8 @@ static pls_status resolve_list(pls_resolver *r, const pls_key *key, pls_node *no
         PLS_TRY(choose_section(r, key, entry, inner, section));
         if (strcmp(section, "contact") == 0)
             PLS_TRY(pls_resolve_contact(r, entry, inner));
+        else if (strcmp(section, "bond") == 0)
+            PLS_TRY(pls_resolve_bond(r, entry, inner));
         else if (strcmp(section, "state") == 0)
             PLS_TRY(pls_resolve_state(r, entry, inner));
         else if (strcmp(section, "force_plugin") == 0)

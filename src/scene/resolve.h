@@ -23,6 +23,7 @@ pls_status pls_resolve_name(const pls_node *node, const char *what);
 /// resolve_scene.c: sections whose keys depend on their contents.
 pls_status pls_resolve_shapes(pls_resolver *r, const pls_key *key, pls_node *map, const char *label);
 pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *label);
+pls_status pls_resolve_bond(pls_resolver *r, pls_node *entry, const char *label);
 pls_status pls_resolve_state(pls_resolver *r, pls_node *entry, const char *label);
 pls_status pls_resolve_force_of_plugin(pls_resolver *r, pls_node *entry, const char *label);
 pls_status pls_resolve_observer_of_plugin(pls_resolver *r, pls_node *entry, const char *label);

@@ -261,25 +261,62 @@ pls_status pls_resolve_shapes(pls_resolver *r, const pls_key *key, pls_node *map
     return PLS_OK;
 }
 
-pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *label)
+/// An entry whose key `law` names operations of a registry: the rows of the section and the parameters of the law.
+typedef struct law_section
 {
-    size_t count;
-    const pls_key *fixed = pls_schema_keys("contact", &count);
+    const char *section;
+    const pls_registry *laws;
+    const pls_parameter *(*parameters)(const void *ops);
+    const char *(*left_out)(const void *ops); ///< rows of the section that the law has no use for, "a|b|c"; may be null
+    pls_table_owner owner;
+} law_section;
+
+static pls_status resolve_with_law(pls_resolver *r, const law_section *how, pls_node *entry, const char *label)
+{
+    size_t fixed;
+    const pls_key *rows = pls_schema_keys(how->section, &fixed);
     pls_key keys[PLS_MAX_KEYS];
-    memcpy(keys, fixed, count * sizeof *keys);
     const pls_node *law = pls_node_get(entry, "law");
     const char *inner = label;
-    if (law && law->kind == PLS_NODE_SCALAR)
+    const void *ops = NULL;
+    size_t count = 0;
+    if (law && law->kind == PLS_NODE_SCALAR) PLS_TRY(find_ops(how->laws, law, &ops));
+    if (!law && entry->kind == PLS_NODE_MAP)
     {
-        const void *found;
-        PLS_TRY(find_ops(&r->scene->law_ops, law, &found));
-        const pls_law_ops *ops = found;
-        PLS_TRY(parameter_keys(r, ops->parameters, PLS_OF_LAW, keys, &count));
-        PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "%s (law %s)", label, ops->name));
-        return pls_resolve_map(r, entry, keys, count, inner);
+        char hint[64];
+        snprintf(hint, sizeof hint, "law: name of a %s", how->laws->what);
+        return pls_node_fail(entry, hint, "missing key 'law' in %s", label);
     }
-    if (entry->kind == PLS_NODE_MAP && !law) return pls_node_fail(entry, "law: name of a contact law", "missing key 'law' in %s", label);
-    return pls_resolve_map(r, entry, keys, count, label);
+    const char *without = ops && how->left_out ? how->left_out(ops) : NULL;
+    for (size_t k = 0; k < fixed; ++k)
+        if (!pls_schema_has_word(without, rows[k].name)) keys[count++] = rows[k];
+    if (!ops) return pls_resolve_map(r, entry, keys, count, label);
+    PLS_TRY(parameter_keys(r, how->parameters(ops), how->owner, keys, &count));
+    PLS_TRY(pls_arena_print(&r->scene->arena, &inner, "%s (law %s)", label, law->text));
+    return pls_resolve_map(r, entry, keys, count, inner);
+}
+
+static const pls_parameter *contact_parameters(const void *ops) { return ((const pls_law_ops *)ops)->parameters; }
+
+pls_status pls_resolve_contact(pls_resolver *r, pls_node *entry, const char *label)
+{
+    const law_section how = {.section = "contact", .laws = &r->scene->law_ops, .parameters = contact_parameters, .owner = PLS_OF_LAW};
+    return resolve_with_law(r, &how, entry, label);
+}
+
+static const pls_parameter *bond_parameters(const void *ops) { return ((const pls_bond_ops *)ops)->parameters; }
+
+/// Bonds that know nothing of each other weigh nothing.
+static const char *no_families(const void *ops)
+{
+    return ((const pls_bond_ops *)ops)->pair ? "influence|spacing|correction|plane|fracture_energy" : NULL;
+}
+
+pls_status pls_resolve_bond(pls_resolver *r, pls_node *entry, const char *label)
+{
+    const law_section how = {
+        .section = "bond", .laws = &r->scene->bond_ops, .parameters = bond_parameters, .left_out = no_families, .owner = PLS_OF_BOND};
+    return resolve_with_law(r, &how, entry, label);
 }
 
 /// An entry that names operations of a plugin: first the map of its numbers, then the entry itself, whose row NAME stands for that map.

@@ -42,6 +42,7 @@ static pls_status load_scene(pls_scene *scene, const char *path, const char *con
     PLS_TRY(pls_scene_parse_domain(scene));
     PLS_TRY(pls_scene_parse_bodies(scene));
     PLS_TRY(pls_scene_parse_contacts(scene));
+    PLS_TRY(pls_scene_parse_bonds(scene));
     PLS_TRY(pls_scene_parse_forces(scene));
     PLS_TRY(pls_scene_parse_states(scene));
     PLS_TRY(pls_scene_parse_observers(scene));
@@ -69,6 +70,7 @@ void pls_scene_free(pls_scene *scene)
     pls_scene_unload_plugins(scene);
     pls_registry_free(&scene->shape_ops);
     pls_registry_free(&scene->law_ops);
+    pls_registry_free(&scene->bond_ops);
     pls_registry_free(&scene->force_ops);
     pls_registry_free(&scene->observer_ops);
     pls_release(&scene->inputs);

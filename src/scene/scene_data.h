@@ -9,6 +9,7 @@
 #include "scene/expression.h"
 #include "scene/node.h"
 
+#include <particls/bond.h>
 #include <particls/plugin.h>
 #include <particls/scene.h>
 
@@ -57,6 +58,15 @@ typedef struct pls_scene_contact
     const pls_law_ops *ops;
 } pls_scene_contact;
 
+typedef struct pls_scene_bonds
+{
+    const char *name;
+    const pls_node *node;
+    const pls_bond_ops *ops;
+    int *of; ///< body entries
+    size_t of_count;
+} pls_scene_bonds;
+
 typedef struct pls_scene_state
 {
     const char *name;
@@ -79,9 +89,9 @@ struct pls_scene
     int dimension;
     double thickness;
 
-    pls_registry shape_ops, law_ops;      ///< built-in and plugins'
-    pls_registry force_ops, observer_ops; ///< plugins'
-    void **plugins;                       ///< dlopen handles
+    pls_registry shape_ops, law_ops, bond_ops; ///< built-in and plugins'
+    pls_registry force_ops, observer_ops;      ///< plugins'
+    void **plugins;                            ///< dlopen handles
     size_t plugin_count, plugin_capacity;
 
     pls_constant *vars;
@@ -93,8 +103,9 @@ struct pls_scene
     pls_scene_shape *shapes;
     pls_scene_body *bodies;
     pls_scene_contact *contacts;
+    pls_scene_bonds *bonds;
     pls_scene_state *states;
-    size_t material_count, shape_count, body_count, contact_count;
+    size_t material_count, shape_count, body_count, contact_count, bonds_count;
 
     pls_observer_def *observers;
     size_t observer_count;
@@ -129,6 +140,7 @@ pls_status pls_scene_parse_materials(pls_scene *scene);
 pls_status pls_scene_parse_shapes(pls_scene *scene);
 pls_status pls_scene_parse_bodies(pls_scene *scene);
 pls_status pls_scene_parse_contacts(pls_scene *scene);
+pls_status pls_scene_parse_bonds(pls_scene *scene);
 pls_status pls_scene_parse_forces(pls_scene *scene);
 pls_status pls_scene_parse_states(pls_scene *scene);
 pls_status pls_scene_parse_observers(pls_scene *scene);

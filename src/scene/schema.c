@@ -37,7 +37,11 @@ static const pls_section sections[] = {
     {"csv", "bodies[k].place.csv",
      "Bodies from a table. Its first line names the columns: x, y (z in 3D) are needed; radius or scale, vx, vy, vz, wx, wy, wz (2D: wz) "
      "and qw, qx, qy, qz may "
-     "follow, in any order."},
+     "follow, in any order, and volume [m^3] of points of a continuum (2D: area [m^2]), which makes their mass by the material's density."},
+    {"fill", "bodies[k].place.fill",
+     "Points of a continuum: a lattice fills a region, and each point has the mass of its cell. The shape of the entry is what points "
+     "touch with where no bond holds them: as a rule "
+     "a sphere of half a spacing."},
     {"motion", "bodies[k].motion",
      "Prescribed motion. Axes not mentioned stand still; `free` in place of a number leaves that axis to the forces."},
     {"turn", "... orientation", "A rotation about an axis."},
@@ -48,6 +52,14 @@ static const pls_section sections[] = {
      "A shape of the scene as a part of a compound. Shapes that are only parts stand under `shapes` like all others."},
     {"contact", "contact[k]",
      "The contact law between two materials. The parameters of the law stand beside `law`. A pair that is named wins over `all`."},
+    {"bond", "bonds[k]",
+     "Bonds between the bodies of some entries. With the laws of peridynamics each body is a point of a continuum and acts on all others "
+     "within the horizon; volumes are masses by the densities of "
+     "materials. Beams join bodies within the horizon and turn with them. Moduli are those of materials. Bodies do not touch while a bond "
+     "holds them. What makes families of bonds (`influence`, "
+     "`spacing`, `correction`, `plane`, `fracture_energy`) has no place in entries of beams. The parameters of the law stand beside "
+     "`law`."},
+    {"crack", "bonds[k].cracks[k]", "A crack that is there from the start: bonds that cross it are broken."},
     {"gravity", "forces[k]", "Uniform gravity."},
     {"field_force", "forces[k]", "A field of forces given by expressions."},
     {"field", "forces[k].field",
@@ -106,6 +118,7 @@ static const pls_key keys[] = {
     {"scene", "domain", PLS_KEY_SECTION, 0, 0, NULL, "domain", "", NULL, ANY, "periodic box"},
     {"scene", "bodies", PLS_KEY_LIST, REQUIRED, 0, NULL, "body", "", NULL, ANY, "bodies and groups of bodies"},
     {"scene", "contact", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "contact", "", NULL, ANY, "contact laws"},
+    {"scene", "bonds", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "bond", "", NULL, ANY, "bonds between bodies"},
     {"scene", "forces", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "gravity|field_force|force_plugin", "", NULL, ANY, "body forces"},
     {"scene", "states", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "state", "", NULL, ANY, "further differential equations"},
     {"scene", "time", PLS_KEY_SECTION, REQUIRED, 0, NULL, "time", "", NULL, ANY, "duration and time step"},
@@ -157,6 +170,7 @@ static const pls_key keys[] = {
     {"place", "hex_pack", PLS_KEY_SECTION, 0, 0, NULL, "hex_pack", "", NULL, ANY, "hexagonal packing"},
     {"place", "random", PLS_KEY_SECTION, 0, 0, NULL, "random", "", NULL, ANY, "loose random packing"},
     {"place", "csv", PLS_KEY_SECTION, 0, 0, NULL, "csv", "", NULL, ANY, "from a table"},
+    {"place", "fill", PLS_KEY_SECTION, 0, 0, NULL, "fill", "", NULL, ANY, "points of a continuum in a region"},
     {"place", "points", PLS_KEY_POINTS, 0, 0, NULL, NULL, "m", NULL, ANY, "list of centres"},
 
     {"lattice", "count", PLS_KEY_COUNTS, REQUIRED, 0, NULL, NULL, "", NULL, 1, 1e9, "bodies along each axis"},
@@ -191,6 +205,15 @@ static const pls_key keys[] = {
     {"box", "lower", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m", NULL, ANY, "lower corner"},
     {"box", "upper", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m", NULL, ANY, "upper corner"},
     {"csv", "file", PLS_KEY_PATH, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "the table"},
+    {"fill", "region", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a shape: points lie in it"},
+    {"fill", "spacing", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "distance of neighbours"},
+    {"fill", "lattice", PLS_KEY_WORD, 0, 0, "cubic|hexagonal", NULL, "", "cubic", ANY,
+     "cubic (2D: square), its first points half a spacing within the box around the region; or hexagonal close packing (2D: triangles)"},
+    {"fill", "position", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", "0", ANY, "of the origin of the region's own frame"},
+    {"fill", "orientation", PLS_KEY_ORIENTATION, 0, 0, NULL, "turn", "", NULL, ANY,
+     "the region's own frame, and the lattice with it, to the world: quaternion [w, x, y, z] or {axis, angle}; in 2D an angle [rad]"},
+    {"fill", "where", PLS_KEY_CONDITION, 0, PLS_USES_PLACE, NULL, NULL, "", NULL, ANY,
+     "points lie only where this is true, for example outside of a hole: \"x^2 + y^2 > 0.01\"; places in the world"},
 
     {"motion", "velocity", PLS_KEY_VECTOR, 0, PLS_USES_TIME, "free", NULL, "m/s", NULL, ANY, "velocity of the centre"},
     {"motion", "angular_velocity", PLS_KEY_SPIN, 0, PLS_USES_TIME, "free", NULL, "rad/s", NULL, ANY, "angular velocity"},
@@ -222,6 +245,31 @@ static const pls_key keys[] = {
      "area over which the stiffness of the law acts with `faces: volume` (2D: length [m])"},
     {"contact", "tolerance", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "1e-6", 0, 0.1,
      "of `solver: admm`: change of its iterates, part of the bodies' size"},
+
+    {"bond", "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY, "bonds_1, bonds_2, ... by default"},
+    {"bond", "of", PLS_KEY_NAMES, REQUIRED, 0, "all", NULL, "", NULL, ANY, "list of body entries that are one continuum, or `all`"},
+    {"bond", "law", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a bond law: linear_solid or bond_based"},
+    {"bond", "horizon", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE,
+     "bonds join points no further apart at the start; about three spacings is usual"},
+    {"bond", "influence", PLS_KEY_NUMBER, 0, PLS_USES_RADIUS, "inverse|one|conical|gaussian", NULL, "", "inverse", POSITIVE,
+     "weight of a bond of length r in its family: horizon/r, 1, 1 - r/horizon, exp(-(r/horizon)^2), or an expression over r"},
+    {"bond", "spacing", PLS_KEY_NUMBER, OPEN, 0, "auto|none", NULL, "m", "auto", POSITIVE,
+     "over which the volume of a partner fades at the horizon, as its cell is cut; auto: the size of the points' cells; none: it does not "
+     "fade"},
+    {"bond", "correction", PLS_KEY_WORD, 0, 0, "none|volume|energy", NULL, "", "none", ANY,
+     "for bonds that are missing at surfaces: each bond times 2 V0/(V_i + V_j), V the volume of a family; or each point's moduli so that a "
+     "dilation stores what it stores inside"},
+    {"bond", "plane", PLS_KEY_WORD, PLS_KEY_ONLY_2D, 0, "strain|stress", NULL, "", "strain", ANY, "what the plane stands for"},
+    {"bond", "critical_stretch", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", NULL, POSITIVE,
+     "bonds longer by more than this part break for good; without it, and without `fracture_energy`, none do"},
+    {"bond", "fracture_energy", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "J/m^2", NULL, POSITIVE,
+     "G, energy per area of a crack, in place of `critical_stretch`, which follows"},
+    {"bond", "cracks", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "crack", "", NULL, ANY, "cracks that are there from the start"},
+    {"crack", "points", PLS_KEY_POINTS, 0, 0, NULL, NULL, "m", NULL, ANY,
+     "2D: a line through these points; 3D: the corners of a flat convex polygon"},
+    {"crack", "centre", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "m", NULL, ANY, "3D: of a disc, in place of `points`"},
+    {"crack", "normal", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "", NULL, ANY, "of the disc"},
+    {"crack", "radius", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "of the disc"},
 
     {"gravity", "gravity", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m/s^2", NULL, ANY, "acceleration of every free body"},
     {"field_force", "field", PLS_KEY_SECTION, REQUIRED, 0, NULL, "field", "", NULL, ANY, "a field of forces"},

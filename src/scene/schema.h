@@ -95,7 +95,7 @@ const pls_key *pls_schema_keys(const char *section, size_t *count);
 pls_key pls_schema_parameter(const pls_parameter *parameter, unsigned uses, char initial[32]);
 
 /// Whose table of parameters it is: shapes take what is not a number too, and the numbers of laws and forces may change in time.
-typedef enum pls_table_owner { PLS_OF_SHAPE, PLS_OF_LAW, PLS_OF_FORCE, PLS_OF_OBSERVER } pls_table_owner;
+typedef enum pls_table_owner { PLS_OF_SHAPE, PLS_OF_LAW, PLS_OF_BOND, PLS_OF_FORCE, PLS_OF_OBSERVER } pls_table_owner;
 /// The row for a parameter of any of them: shapes take other things than numbers, laws and forces expressions over t and states, and vectors have the scene's
 /// dimension but for laws.
 pls_key pls_schema_parameter_of(pls_table_owner owner, const pls_parameter *parameter, char initial[32]);

@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 
+#include <particls/bond.h>
 #include <particls/scene.h>
 
 #include <string.h>
@@ -217,21 +218,27 @@ static pls_status json_shape(pls_text *out)
     return pls_text_print(out, "}}");
 }
 
-/// A contact is open, because its other keys are the parameters of its law, which may come from a plugin; those of built-in laws are
+static pls_status json_law(pls_text *out, const char *name, const char *meaning, const pls_parameter *parameters, pls_table_owner owner,
+                           bool first)
+{
+    PLS_TRY(pls_text_print(out, "%s\n      {\"if\": {\"properties\": {\"law\": {\"const\": ", first ? "" : ","));
+    PLS_TRY(json_string(out, name));
+    PLS_TRY(pls_text_print(out, "}}}, \"then\": {\"description\": "));
+    PLS_TRY(json_string(out, meaning));
+    PLS_TRY(pls_text_print(out, ", "));
+    PLS_TRY(json_parameters(out, parameters, owner));
+    return pls_text_print(out, "}}");
+}
+
+/// An entry with a law is open, because its other keys are the parameters of the law, which may come from a plugin; those of built-in laws are
 /// described.
-static pls_status json_laws(pls_text *out)
+static pls_status json_laws(pls_text *out, bool of_bonds)
 {
     PLS_TRY(pls_text_print(out, ", \"allOf\": ["));
-    for (const pls_law_ops *const *ops = pls_builtin_laws(); *ops; ++ops)
-    {
-        PLS_TRY(pls_text_print(out, "%s\n      {\"if\": {\"properties\": {\"law\": {\"const\": ", ops == pls_builtin_laws() ? "" : ","));
-        PLS_TRY(json_string(out, (*ops)->name));
-        PLS_TRY(pls_text_print(out, "}}}, \"then\": {\"description\": "));
-        PLS_TRY(json_string(out, (*ops)->meaning));
-        PLS_TRY(pls_text_print(out, ", "));
-        PLS_TRY(json_parameters(out, (*ops)->parameters, PLS_OF_LAW));
-        PLS_TRY(pls_text_print(out, "}}"));
-    }
+    for (const pls_law_ops *const *ops = pls_builtin_laws(); !of_bonds && *ops; ++ops)
+        PLS_TRY(json_law(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, PLS_OF_LAW, ops == pls_builtin_laws()));
+    for (const pls_bond_ops *const *ops = pls_builtin_bonds(); of_bonds && *ops; ++ops)
+        PLS_TRY(json_law(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, PLS_OF_BOND, ops == pls_builtin_bonds()));
     return pls_text_print(out, "]");
 }
 
@@ -274,7 +281,7 @@ static pls_status write_json(pls_text *out)
     for (size_t k = 0; k < sections; ++k)
     {
         const pls_key *keys = pls_schema_keys(section[k].name, &count);
-        bool contact = strcmp(section[k].name, "contact") == 0;
+        const bool bond = strcmp(section[k].name, "bond") == 0, law = bond || strcmp(section[k].name, "contact") == 0;
         bool nothing = true, plugin = count > 0 && keys->type == PLS_KEY_PLUGIN;
         for (size_t j = 0; j < count; ++j) nothing = nothing && !(keys[j].flags & PLS_KEY_REQUIRED);
         PLS_TRY(pls_text_print(out, "%s\n    ", k ? "," : ""));
@@ -282,8 +289,8 @@ static pls_status write_json(pls_text *out)
         PLS_TRY(pls_text_print(out, ": {\"type\": %s, \"description\": ", nothing ? "[\"object\", \"null\"]" : "\"object\""));
         PLS_TRY(json_string(out, section[k].meaning));
         PLS_TRY(pls_text_print(out, ", "));
-        PLS_TRY(plugin ? json_plugin(out, section[k].name, keys, count) : json_map(out, keys, count, !contact));
-        if (contact) PLS_TRY(json_laws(out));
+        PLS_TRY(plugin ? json_plugin(out, section[k].name, keys, count) : json_map(out, keys, count, !law));
+        if (law) PLS_TRY(json_laws(out, bond));
         PLS_TRY(pls_text_print(out, "}"));
     }
     PLS_TRY(json_shape(out));
@@ -439,6 +446,9 @@ static pls_status write_page(pls_text *out)
     PLS_TRY(pls_text_print(out, "## Contact laws\n\n`contact: [{between: [a, b], law: LAW, parameters}]`\n\n"));
     for (const pls_law_ops *const *ops = pls_builtin_laws(); *ops; ++ops)
         PLS_TRY(pls_page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, PLS_OF_LAW));
+    PLS_TRY(pls_text_print(out, "## Bond laws\n\n`bonds: [{of: [a, b], law: LAW, parameters}]`\n\n"));
+    for (const pls_bond_ops *const *ops = pls_builtin_bonds(); *ops; ++ops)
+        PLS_TRY(pls_page_parameters(out, (*ops)->name, (*ops)->meaning, (*ops)->parameters, PLS_OF_BOND));
     return PLS_OK;
 }
 

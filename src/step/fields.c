@@ -42,8 +42,10 @@ enum body_columns {
 #define PERSISTS                                  PLS_FIELD_PERSISTS
 #define FRAME                                     PLS_FIELD_FRAME
 #define ID                                        PLS_FIELD_ID
+#define BONDED                                    PLS_FIELD_BONDED
 #define OFFSET_OF(row, member)                    OFFSET_EMPTY_##row(member)
 #define OFFSET_EMPTY_double(member)               0
+#define OFFSET_EMPTY_float(member)                0
 #define OFFSET_EMPTY_pls_body_place(member)       offsetof(pls_body_place, member)
 #define OFFSET_EMPTY_pls_body_spin(member)        offsetof(pls_body_spin, member)
 #define OFFSET_EMPTY_pls_body_orientation(member) offsetof(pls_body_orientation, member)
@@ -101,6 +103,14 @@ static const pls_field number_fields[] = {
      "how often number 0, 1, ... has been given: ids given after a restart are those of an undisturbed run", 0, 0},
 };
 
+static const pls_field bond_fields[] = {
+    {"broken", PLS_U8, 1, PERSISTS, "", "1 where the bond is broken", 0, 0},
+};
+
+static const pls_field point_fields[] = {
+    {"energy_broken", PLS_F64, 1, PERSISTS, "J", "energy its bonds held when they broke", 0, 0},
+};
+
 static const struct
 {
     const char *name;
@@ -112,6 +122,8 @@ static const struct
     [PLS_TABLE_STATES] = {"states", state_fields, sizeof state_fields / sizeof state_fields[0]},
     [PLS_TABLE_PAIRS] = {"pairs", pair_fields, sizeof pair_fields / sizeof pair_fields[0]},
     [PLS_TABLE_NUMBERS] = {"numbers", number_fields, sizeof number_fields / sizeof number_fields[0]},
+    [PLS_TABLE_BONDS] = {"bonds", bond_fields, sizeof bond_fields / sizeof bond_fields[0]},
+    [PLS_TABLE_POINTS] = {"points", point_fields, sizeof point_fields / sizeof point_fields[0]},
 };
 
 const pls_field *pls_fields(pls_table_kind table, size_t *count)

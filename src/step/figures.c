@@ -76,6 +76,13 @@ pls_status pls_world_get_figures(const pls_world *world, pls_world_figures *f)
                     (world->list.pairs.start_capacity + world->list.walls.start_capacity) * sizeof(uint32_t);
     f->contact_bytes = pls_pair_list_bytes(&world->list) + world->memory.capacity * sizeof *world->memory.entry +
                        pls_solid_list_bytes(&world->solids) + world->records.capacity * sizeof *world->records.entry;
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        pls_bonds_figures bonds;
+        PLS_TRY(pls_world_bonds_figures(world, (pls_bonds_id){(uint16_t)(s + 1)}, &bonds));
+        f->energy_bonds += bonds.energy, f->energy_broken += bonds.energy_broken;
+        f->bonds += bonds.bonds / 2, f->bonds_broken += bonds.broken / 2, f->bond_bytes += bonds.bytes;
+    }
     if (world->memory_holds || !world->prepared) return PLS_OK; // forces of contacts are known after a step only
     pls_contact_view view = {0};
     pls_status status = pls_contact_view_make(world, &view);

@@ -8,6 +8,7 @@
 #include "base/sort.h"
 #include "contact/approach.h"
 #include "contact/broad_phase.h"
+#include "step/bonds.h"
 
 #include <string.h>
 
@@ -140,6 +141,21 @@ static void take_out_solids(pls_near_pairs *near, const pls_bodies *bodies)
     near->count = kept;
 }
 
+/// Take pairs of solids out that bonds hold; where one lets go, the lists are made anew.
+static void take_out_bonded(pls_near_pairs *near, const pls_world *world)
+{
+    const pls_bodies *b = &world->bodies;
+    size_t kept = 0;
+    for (size_t k = 0; k < near->count; ++k)
+    {
+        const uint32_t i = near->pair[k].owner, j = near->pair[k].partner;
+        if (!pls_pair_is_solid(b, i, j) || !pls_bonds_hold(world, b->kind[i].number, b->kind[j].number)) near->pair[kept++] = near->pair[k];
+    }
+    near->count = kept;
+}
+
+static bool bonds_hold(const void *world, uint32_t a, uint32_t b) { return pls_bonds_hold(world, a, b); }
+
 /// The furthest images that solids touch count too, where the box stretches and carries them away.
 static void reach_of_images(pls_pair_list *list, const pls_solid_list *solids)
 {
@@ -154,6 +170,7 @@ static pls_status build_lists(pls_world *world)
     const double skin = world->tuner.skin;
     pls_status status = pls_broad_phase(&world->bodies, &world->domain, skin, &near);
     if (status == PLS_OK && world->def.skin == 0.0) pls_skin_survey(&world->tuner, &world->bodies, &world->domain, &near);
+    if (status == PLS_OK && world->bond_count > 0) take_out_bonded(&near, world);
     const pls_solid_source source = {
         .bodies = &world->bodies, .domain = &world->domain, .laws = &world->laws, .shape = world->shape_of, .near = &near, .gap = skin};
     if (status == PLS_OK) status = pls_solid_list_build(&world->solids, &source, &world->records);
@@ -163,6 +180,8 @@ static pls_status build_lists(pls_world *world)
         status = pls_pair_list_build(&world->list, &world->bodies, &world->domain, &world->laws, &near, skin, world->state_count > 0,
                                      &world->memory);
     }
+    if (status == PLS_OK && world->bond_count > 0) status = pls_pair_list_hold(&world->list, &world->bodies, bonds_hold, world);
+    if (status != PLS_OK) world->list.stale = true;
     if (status == PLS_OK && world->domain.any_periodic) reach_of_images(&world->list, &world->solids);
     pls_near_pairs_free(&near);
     return status;

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/hash.h"
+#include "step/bonds.h"
 #include "step/world.h"
 
 #include <string.h>
@@ -70,6 +71,8 @@ pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
     header->rows[PLS_TABLE_PAIRS] = made->pairs.count;
     header->rows[PLS_TABLE_STATES] = world->value_count;
     header->rows[PLS_TABLE_NUMBERS] = world->bodies.numbers;
+    header->rows[PLS_TABLE_BONDS] = pls_bonds_count(world);
+    header->rows[PLS_TABLE_POINTS] = pls_bonds_points(world);
     return PLS_OK;
 }
 
@@ -109,6 +112,17 @@ pls_status pls_persist_get(pls_world *world, pls_table_kind table, const pls_fie
         if (world->bodies.numbers) memcpy(to, world->bodies.generation_of, world->bodies.numbers * size);
         return PLS_OK;
     }
+    if (table == PLS_TABLE_BONDS)
+    {
+        for (size_t s = 0; s < world->bond_count; to += world->bond[s++].family.bonds) pls_bond_read_broken(&world->bond[s], (uint8_t *)to);
+        return PLS_OK;
+    }
+    if (table == PLS_TABLE_POINTS)
+    {
+        for (size_t s = 0; s < world->bond_count; to += world->bond[s++].family.count * size)
+            memcpy(to, world->bond[s].broken, world->bond[s].family.count * size);
+        return PLS_OK;
+    }
     const tables *made = world->persisting;
     if (!made) return pls_fail(PLS_INVALID_ARGUMENT, "the contact tables are read between pls_persist_save_begin and _end");
     if (table == PLS_TABLE_CONTACTS)
@@ -126,6 +140,10 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
     if (header->rows[PLS_TABLE_STATES] != world->value_count)
         return pls_fail(PLS_CORRUPT, "the saved state holds %llu state values, the scene has %zu",
                         (unsigned long long)header->rows[PLS_TABLE_STATES], world->value_count);
+    if (header->rows[PLS_TABLE_BONDS] != pls_bonds_count(world) || header->rows[PLS_TABLE_POINTS] != pls_bonds_points(world))
+        return pls_fail(PLS_CORRUPT, "the saved state holds %llu bonds of %llu points, the scene has %zu of %zu",
+                        (unsigned long long)header->rows[PLS_TABLE_BONDS], (unsigned long long)header->rows[PLS_TABLE_POINTS],
+                        pls_bonds_count(world), pls_bonds_points(world));
     if (header->rows[PLS_TABLE_NUMBERS] >= PLS_NO_ROW || header->rows[PLS_TABLE_BODIES] > header->rows[PLS_TABLE_NUMBERS] ||
         header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || header->rows[PLS_TABLE_PAIRS] >= PLS_NO_ROW || !(header->dt > 0.0) ||
         !isfinite(header->time))
@@ -177,6 +195,15 @@ pls_status pls_persist_put(pls_world *world, pls_table_kind table, const pls_fie
     {
         if (world->bodies.numbers) memcpy(world->bodies.generation_of, from, world->bodies.numbers * size);
     }
+    else if (table == PLS_TABLE_BONDS)
+    {
+        const uint8_t *broken = in;
+        for (size_t s = 0; s < world->bond_count; broken += world->bond[s++].family.bonds)
+            PLS_TRY(pls_bond_write_broken(&world->bond[s], broken));
+    }
+    else if (table == PLS_TABLE_POINTS)
+        for (size_t s = 0; s < world->bond_count; from += world->bond[s++].family.count * size)
+            memcpy(world->bond[s].broken, from, world->bond[s].family.count * size);
     else if (table == PLS_TABLE_CONTACTS)
         for (size_t k = 0; k < world->memory.count; ++k) memcpy((char *)&world->memory.entry[k] + field->offset, from + k * size, size);
     else
@@ -236,6 +263,8 @@ pls_status pls_persist_restore_end(pls_world *world)
             return pls_fail(PLS_CORRUPT, "a saved contact joins bodies %u and %u, which are not there", entry->number_i, entry->number_j);
     }
     for (size_t k = 0; k < world->records.count; ++k) PLS_TRY(check_record(world, &world->records.entry[k]));
+    for (size_t s = 0; s < world->bond_count; ++s) PLS_TRY(pls_bond_check_restored(&world->bond[s], bodies));
+    for (uint32_t n = 0; world->bond_count > 0 && n < bodies->numbers; ++n) pls_bonds_note_damage(world, n);
     return pls_world_resume(world);
 }
 

@@ -1,9 +1,9 @@
 // sweep.c -- contacts, and forces and velocities of the end of a step, in one sweep over the pair list: bodies are finished as soon as their last contact is
 // known, while it is in the cache. Whatever the order, each contact is computed from bodies that are not yet finished, and each body from all of its contacts.
 //
-// Threads have a share of the list each, and help where others are late. They wait for each other twice per step, with solids four times:
+// Threads have a share of the list each, and help where others are late. They wait for each other twice per step, with solids four times, with bonds twice or three times more:
 //
-//     poses of solids | contacts of solids | walls, own blocks of pairs and the bodies that are done with, blocks of others | bodies with pairs in several shares | is there a next step to go on with?
+//     positions of points | their dilatations | forces of bonds | poses of solids | contacts of solids | walls, own blocks of pairs and the bodies that are done with, blocks of others | bodies with pairs in several shares | is there a next step to go on with?
 //
 // and stay together for all steps that run into each other: waking a team costs as much as the work of some hundred bodies.
 
@@ -12,6 +12,7 @@
 #include "base/barrier.h"
 #include "base/parallel.h"
 #include "contact/sweep_plan.h"
+#include "step/bonds.h"
 #include "step/velocity_verlet.h"
 
 #include <omp.h>
@@ -76,11 +77,12 @@ static pls_status finish_block(pls_world *world, size_t first, size_t last, doub
 {
     double force[4 * BODY_BLOCK] __attribute__((aligned(64))), torque[4 * BODY_BLOCK] __attribute__((aligned(64)));
     double scratch[PLS_FORCE_SCRATCH] __attribute__((aligned(64)));
-    const bool solid = world->solids.count > 0, forced = world->force_count > 0 || solid;
+    const bool solid = world->solids.count > 0, bonded = world->bond_count > 0, forced = world->force_count > 0 || solid || bonded;
     if (world->force_count > 0)
         PLS_TRY(pls_body_forces(world, first, last, time, scratch, force, torque));
-    else if (solid)
+    else if (forced)
         memset(force, 0, (last - first) * 4 * sizeof *force), memset(torque, 0, (last - first) * 4 * sizeof *torque);
+    for (size_t k = 0; k < world->bond_count; ++k) pls_bond_gather(&world->bond[k], &world->bodies, first, last, force, torque);
     if (solid) pls_solid_gather(&world->solids, first, last, force, torque);
     PLS_SIMD_SELECT(pls_verlet_finish)
     (&world->bodies, &world->list, first, last, dt, forced ? force : NULL, forced ? torque : NULL, go_on, report);
@@ -98,6 +100,7 @@ typedef struct sweep
     bool go_on;         ///< each body begins its next step at once, while its rows are at hand
     bool again;         ///< the next step is swept too
     size_t next_solids; ///< block of contacts of solids that nobody has taken
+    pls_barrier bonds_placed, bonds_dilated, bonds_known;
     pls_barrier solids_posed, solids_known;
     pls_barrier walls_known; ///< before all threads have done their contacts with walls, no body may be finished
     pls_barrier contacts_known, step_done;
@@ -347,6 +350,32 @@ static void sweep_solids(sweep *s, share *mine)
     pls_barrier_pass(&s->solids_known, mine->threads, mine->round);
 }
 
+/// Wait for all threads, the last of which looks after the whole.
+static void meet(sweep *s, pls_barrier *barrier, const share *mine, void (*whole)(pls_world *world))
+{
+    if (pls_barrier_arrive(barrier, mine->threads))
+    {
+        whole(s->world);
+        pls_barrier_open(barrier);
+    }
+    else
+        pls_barrier_wait(barrier, mine->round);
+}
+
+/// Forces of all bonds, before any body is finished.
+static void sweep_bonds(sweep *s, const share *mine)
+{
+    pls_bonds_place(s->world, mine->thread, mine->threads);
+    meet(s, &s->bonds_placed, mine, pls_bonds_placed);
+    if (pls_bonds_dilate_at_all(s->world))
+    {
+        pls_bonds_dilate(s->world, mine->thread, mine->threads);
+        meet(s, &s->bonds_dilated, mine, pls_bonds_dilated);
+    }
+    pls_bonds_act(s->world, mine->thread, mine->threads);
+    meet(s, &s->bonds_known, mine, pls_bonds_acted);
+}
+
 static void add_counts(pls_narrow_counts *total, const pls_narrow_counts *part)
 {
     total->queries += part->queries, total->iterations += part->iterations, total->restarts += part->restarts;
@@ -422,6 +451,7 @@ static void take_part(sweep *s, int thread, int threads)
     for (unsigned round = 0; round == 0 || s->again; ++round)
     {
         share mine = share_of(s->world, thread, threads, round);
+        if (s->world->bond_count > 0) sweep_bonds(s, &mine);
         if (s->world->solids.count > 0) sweep_solids(s, &mine);
         work_walls(s, &mine);
         sweep_share(s, &mine);
@@ -449,13 +479,17 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     s.go_on = may_go_on(world, end);
     note_kept(&s);
     for (int t = 0; t < world->work_count; ++t) world->parted[t].count = 0; // a sweep that failed may have left some
+    pls_barrier_init(&s.bonds_placed);
+    pls_barrier_init(&s.bonds_dilated);
+    pls_barrier_init(&s.bonds_known);
     pls_barrier_init(&s.solids_posed);
     pls_barrier_init(&s.solids_known);
     pls_barrier_init(&s.walls_known);
     pls_barrier_init(&s.contacts_known);
     pls_barrier_init(&s.step_done);
     const bool large = needs_team(list->block_count) || needs_team(world->solids.block_count) ||
-                       needs_team(pls_block_count(world->bodies.count, BODY_BLOCK));
+                       needs_team(pls_block_count(world->bodies.count, BODY_BLOCK)) ||
+                       needs_team(pls_block_count(pls_bonds_points(world), PLS_BOND_BLOCK));
     if (large && !list->alone)
     {
 #pragma omp parallel
@@ -463,6 +497,9 @@ pls_status pls_sweep(pls_world *world, double dt, uint64_t end, bool *begun)
     }
     else
         take_part(&s, 0, 1);
+    pls_barrier_destroy(&s.bonds_placed);
+    pls_barrier_destroy(&s.bonds_dilated);
+    pls_barrier_destroy(&s.bonds_known);
     pls_barrier_destroy(&s.solids_posed);
     pls_barrier_destroy(&s.solids_known);
     pls_barrier_destroy(&s.walls_known);

@@ -18,6 +18,7 @@
 
 #include "base/parallel.h"
 #include "math/eigen6.h"
+#include "step/bonds.h"
 #include "step/whole_rates.h"
 
 #include <stdio.h>
@@ -144,6 +145,8 @@ static pls_body_rates rates_of(const pls_world *world, uint32_t row, int coordin
     }
     if (!world->memory_holds && world->solids.count > 0) add_solids(world, row, root_inertia, &rates);
     pls_add_missing_contacts(world, row, coordination, &rates);
+    for (int a = 0; world->bond_count > 0 && a < 6; ++a)
+        rates.stiffness[7 * a] += pls_bonds_rate(world, world->bodies.kind[row].number, a >= 3);
     return rates;
 }
 
@@ -169,7 +172,8 @@ static void estimate_body(const pls_world *world, uint32_t number, int coordinat
                                  .damping = damping,
                                  .body = number,
                                  .contacts = rates.contacts,
-                                 .damping_limits = damping > sqrt(stiffness)};
+                                 .damping_limits = damping > sqrt(stiffness),
+                                 .bonds = world->bond_count > 0 ? pls_bonds_rate(world, number, false) : 0.0};
 }
 
 /// The bound body by body: of those that allow the smallest step, less than `below`, the first; none: a step of `below`.
@@ -209,6 +213,7 @@ static void mark_near(pls_world *world)
         const pls_pair_section *section = &list->section[s];
         for (size_t c = section->first; c < section->first + section->count; ++c)
         {
+            if (!section->wall && !(pls_pair_free_lanes(list, c) >> (c & 7) & 1)) continue; // a bond holds the two
             const pls_body_place *p = &b->place[list->row_i[c]], *q = &b->place[list->row_j[c]];
             double d[3] = {q->x - p->x, q->y - p->y, q->z - p->z}, delta;
             if (section->wall)
@@ -286,7 +291,9 @@ static pls_status refuse(const pls_world *world, int coordination, const pls_ste
                  "many, "
                  "say how many by time.coordination.",
                  coordination);
-    if (e->damping_limits)
+    if (!e->damping_limits && e->bonds > 0.5 * e->stiffness)
+        snprintf(limit, sizeof limit, "its bonds limit it: natural frequency %.4g 1/s", sqrt(e->bonds));
+    else if (e->damping_limits)
         snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping,
                  sqrt(e->stiffness));
     else
@@ -316,7 +323,8 @@ pls_status pls_choose_step(pls_world *world)
     PLS_TRY(status);
     if (world->dt == 0.0)
     {
-        if (!isfinite(e.dt)) return pls_fail(PLS_UNSTABLE_STEP, "no contact law limits the time step, so it cannot be chosen; give dt [s]");
+        if (!isfinite(e.dt))
+            return pls_fail(PLS_UNSTABLE_STEP, "no contact law and no bonds limit the time step, so it cannot be chosen; give dt [s]");
         world->dt = world->def.safety * e.dt;
         return PLS_OK;
     }

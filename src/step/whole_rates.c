@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/random.h"
 #include "math/lanczos.h"
+#include "step/bonds.h"
 
 static const double margin = 1.03; ///< Lanczos values come from below
 
@@ -91,8 +92,8 @@ static pls_status whole_make(const pls_world *world, int coordination, whole *w)
         pls_root_inverse_inertia(world, row, w->root[row]);
         pls_body_rates missing = {.contacts = contacts[row]};
         pls_add_missing_contacts(world, row, coordination, &missing);
-        w->missing[row][0][0] = missing.stiffness[0];
-        w->missing[row][0][1] = missing.stiffness[35];
+        w->missing[row][0][0] = missing.stiffness[0] + pls_bonds_rate(world, b->kind[row].number, false);
+        w->missing[row][0][1] = missing.stiffness[35] + pls_bonds_rate(world, b->kind[row].number, true);
         w->missing[row][1][0] = missing.damping[0];
         w->missing[row][1][1] = missing.damping[35];
     }

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "shape/builtin.h"
+#include "step/bonds.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -113,6 +114,7 @@ void pls_world_destroy(pls_world *world)
     pls_release(&world->shape_of);
     pls_solid_list_free(&world->solids);
     pls_solid_records_free(&world->records);
+    pls_bonds_free(world);
     pls_release(&world->group);
     pls_release(&world->motion);
     pls_release(&world->force);
@@ -590,6 +592,7 @@ pls_status pls_world_remove_body(pls_world *world, pls_body_id id)
         if (world->records.entry[k].number_i != number && world->records.entry[k].number_j != number)
             world->records.entry[kept++] = world->records.entry[k];
     world->records.count = kept;
+    pls_bonds_leave(world, number);
     pls_bodies_remove(&world->bodies, row);
     world->special_stale = true;
     return PLS_OK;

@@ -2,6 +2,7 @@
 #ifndef PLS_STEP_WORLD_H
 #define PLS_STEP_WORLD_H
 
+#include "bond/bond_set.h"
 #include "contact/pair_list.h"
 #include "contact/solid_contact.h"
 #include "contact/sphere_contact.h"
@@ -110,6 +111,9 @@ struct pls_world
     size_t value_count, value_capacity;
     pls_binding *binding;
     size_t binding_count, binding_capacity;
+
+    pls_bond_set *bond;
+    size_t bond_count, bond_capacity;
 
     pls_pair_list list;
     pls_contact_memory memory; ///< filled when the list is about to change

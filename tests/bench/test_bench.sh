@@ -11,13 +11,17 @@ PARTICLS_ISA=v2 "${run[@]}" --threads 2 >v2.json
 "$PARTICLS_BUILD/bench/broad_phase" 1000 100 >broad.json
 "$PARTICLS_BUILD/bench/contact_query" box polyhedron32 20 5 >query.json
 "$PARTICLS_BUILD/bench/polyhedra" --bodies 8 --steps 10 --faces point --state heap >polyhedra.json
+"$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 >bonds.json
+PARTICLS_ISA=v2 OMP_NUM_THREADS=2 "$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 >bonds2.json
+PARTICLS_ISA=v3 OMP_NUM_THREADS=2 "$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 --law beam >beams2.json
+"$PARTICLS_BUILD/bench/peridynamics" --side 8 --steps 10 --law beam >beams.json
 "${run[@]}" --lammps-data packing.data >variables
 
 # 9 x 10 x 12: the example's 22 : 25 : 30 with at least 1,000 spheres. Inside a hexagonal close packing a sphere has 12 neighbours, each contact has two ends;
 # at the surface and towards the walls it has fewer.
 python3 - <<'PYTHON' || fail "the JSON is not as it should be"
 import json
-best, v2, broad, query, polyhedra = (json.load(open(name + ".json")) for name in ("best", "v2", "broad", "query", "polyhedra"))
+best, v2, broad, query, polyhedra, bonds, bonds2, beams, beams2 = (json.load(open(name + ".json")) for name in ("best", "v2", "broad", "query", "polyhedra", "bonds", "bonds2", "beams", "beams2"))
 assert best["counts"] == [9, 10, 12] and best["bodies"] == 1080 and best["steps"] == 50 and best["threads"] == 1, best
 assert v2["threads"] == 2 and v2["state_hash"] == best["state_hash"], (best, v2)
 assert 4 * 1080 < best["touching"] < 6.5 * 1080 and best["listed"] >= best["touching"], best
@@ -27,6 +31,11 @@ assert broad["bodies"] == 1000 and broad["size_ratio"] == 100 and broad["pairs"]
 # Poses are made to overlap; nobody's normal gives an overlap less than our depth.
 assert query["touching"] > 0.9 and query["warm_ns"] > 0 and query["failures"] == 0 and query["cold_worst"] < 1e-9 and query.get("ours_above", 0) < 1e-9, query
 assert polyhedra["bodies"] == 8 and polyhedra["particle_steps_per_s"] > 0, polyhedra
+# Bonds: vectors from -3 to 3 of length up to 3.015, each as often as it fits into 8 x 8 x 8 points; beams along the edges of the lattice. The state depends on nothing but the job.
+steps = [(i, j, k) for i in range(-3, 4) for j in range(-3, 4) for k in range(-3, 4) if 0 < i * i + j * j + k * k <= 9]
+assert bonds["bonds"] == sum((8 - abs(i)) * (8 - abs(j)) * (8 - abs(k)) for i, j, k in steps) and beams["bonds"] == 6 * 7 * 64, (bonds, beams)
+assert bonds["energy"] > 0 and beams["energy"] > 0 and bonds2["threads"] == 2 and bonds2["state_hash"] == bonds["state_hash"], (bonds, bonds2)
+assert beams2["state_hash"] == beams["state_hash"], (beams, beams2)
 # The heap: grains of 28 corners, no further apart than the longest diameter, 1 m.
 lines = [list(map(float, line.split())) for line in open("heap")]
 assert len(lines) == 9 and len(lines[0]) == 6, lines[0]

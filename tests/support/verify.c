@@ -229,7 +229,8 @@ pls_world_figures verify_figures(pls_world *world)
 double verify_total_energy(pls_world *world)
 {
     pls_world_figures f = verify_figures(world);
-    return f.energy_kinetic + f.energy_rotation + f.energy_normal + f.energy_shear + f.energy_potential + f.energy_damped + f.energy_slid;
+    return f.energy_kinetic + f.energy_rotation + f.energy_normal + f.energy_shear + f.energy_potential + f.energy_damped + f.energy_slid +
+           f.energy_bonds + f.energy_broken;
 }
 
 uint64_t verify_hash(pls_world *world)

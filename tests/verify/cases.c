@@ -63,6 +63,9 @@ const verify_entry verify_cases[] = {
     {"step-pair", "Estimate of the stable step: one contact", case_step_estimate_pair},
     {"step-packing", "Estimate of the stable step: hexagonal packing", case_step_estimate_packing},
     {"step-refused", "A step that is too large is refused", case_step_refused},
+    {"bond-dispersion", "Waves in a linear peridynamic solid against the exact dispersion of the lattice", case_bond_dispersion},
+    {"bond-shear", "Shear of a linear peridynamic solid against the lattice's own sum", case_bond_shear},
+    {"bond-bar", "A bar of a linear peridynamic solid in tension", case_bond_bar},
     {NULL, NULL, NULL},
 };
 

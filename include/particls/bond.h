@@ -1,0 +1,162 @@
+/// @file bond.h
+/// Bonds between bodies: material points of a continuum that act on all points within a horizon (peridynamics), and beams that join bodies and turn with them. See docs/theory.md.
+#ifndef PARTICLS_BOND_H
+#define PARTICLS_BOND_H
+
+#include <particls/law.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct pls_world;
+
+/// A set of bonds in a world. 0: none.
+typedef struct pls_bonds_id
+{
+    uint16_t index1;
+} pls_bonds_id;
+
+/// What a plane stands for in 2D.
+typedef enum pls_plane { PLS_PLANE_STRAIN, PLS_PLANE_STRESS } pls_plane;
+
+/// How bonds of a family count, as a function of their reference length xi (of the horizon delta).
+typedef enum pls_influence {
+    PLS_INFLUENCE_ONE,      ///< 1
+    PLS_INFLUENCE_INVERSE,  ///< delta / xi
+    PLS_INFLUENCE_CONICAL,  ///< 1 - xi / delta
+    PLS_INFLUENCE_GAUSSIAN, ///< exp(-xi^2 / delta^2), P1 eq. 33
+    PLS_INFLUENCE_FUNCTION  ///< the user's own
+} pls_influence;
+
+/// Families near a surface lack bonds; what makes up for it.
+typedef enum pls_correction {
+    PLS_CORRECTION_NONE,
+    PLS_CORRECTION_VOLUME, ///< the stiffness of each bond times 2 V0 / (V_i + V_j), V the volume of a family and V0 that of the fullest one (Le and Bobaru 2018)
+    PLS_CORRECTION_ENERGY ///< each bond by what its two families make of stretches along the axes, compared with the fullest one (Madenci and Oterkus 2014)
+} pls_correction;
+
+/// Where a law is asked: what its constants may depend on.
+typedef struct pls_bond_setting
+{
+    int dimension;                ///< 2 or 3
+    pls_plane plane;              ///< in 2D
+    pls_material_values material; ///< of the points; E and nu are NaN where not given
+} pls_bond_setting;
+
+/// Coefficients of a linear law: a bond of reference length xi and extension e in a family of weighted volume m and dilatation theta carries the force density per volume
+///     t = (w / m) (dilation theta xi + extension e)        (Silling et al. 2007, THEORY 5)
+/// with theta = (d / m) sum w xi e V, d = 3 (2 in 2D).
+typedef struct pls_bond_coefficients
+{
+    double dilation;  ///< [Pa]
+    double extension; ///< [Pa]
+} pls_bond_coefficients;
+
+/// A batch of bonds that turn with the two bodies they join, each seen from one of them, its own body; the same bond is seen from the other one elsewhere. All arrays hold `count` values, a
+/// multiple of 8, at most PLS_LAW_BATCH, are 64-byte aligned and do not overlap; lanes that fill up hold harmless values, so that one plain loop without branches is right. A law that gives opposite forces
+/// and torques that balance for the two views of a bond keeps both momenta.
+typedef struct pls_pair_batch
+{
+    size_t count;
+    const double *constants; ///< what `prepare` left
+    const double *reference; ///< length of the bond when it was made [m]
+    const double *length;    ///< now [m]
+    const double *unit[3];   ///< from the own body to the other
+    const double
+        *along[2][3]; ///< of the own and the other body: a unit vector fixed in it that pointed to its partner when the bond was made
+    const double *across[2][3]; ///< likewise: a unit vector across the bond, which both bodies had alike
+    double *force[3];           ///< out: on the own body [N]
+    double *torque[3];          ///< out: on the own body, about its centre [N m]
+    double *energy;             ///< out: stored in the bond [J]
+    double *load;               ///< out: part of its strength that the bond carries; from 1 on it breaks. The same for both views
+} pls_pair_batch;
+
+/// Most constants a pair law may prepare.
+#define PLS_BOND_MAX_CONSTANTS 16
+
+/// Stiffness of a bond of one length against small motions, for the stable step: as of an Euler-Bernoulli beam.
+typedef struct pls_pair_stiffness
+{
+    double axial;   ///< EA/l [N/m]
+    double bending; ///< EI/l [N m]
+    double torsion; ///< GJ/l [N m]
+} pls_pair_stiffness;
+
+/// A bond law: `linear` or `pair`, one of them, and what goes with it.
+typedef struct pls_bond_ops
+{
+    uint32_t api_version; ///< PLS_API_VERSION
+    const char *name;     ///< the scene's `law:` value
+    const char *meaning;  ///< one line for the docs
+    const pls_parameter *parameters;
+    bool pairwise; ///< a bond knows itself alone: m is that of the fullest family of the set, whatever bonds its points have
+    /// Coefficients of a linear law. INVALID_ARGUMENT names a value the law cannot have (nu of bond-based laws).
+    pls_status (*linear)(const double *values, const pls_bond_setting *setting, pls_bond_coefficients *out);
+
+    /// Of a pair law: check what the table cannot and turn parameters and material into constants.
+    pls_status (*prepare)(const double *values, const pls_bond_setting *setting, double constants[PLS_BOND_MAX_CONSTANTS]);
+    /// The law itself.
+    void (*pair)(const pls_pair_batch *batch);
+    /// Stiffness of a bond of this length [m].
+    void (*stiffness)(const double *constants, double length, pls_pair_stiffness *out);
+} pls_bond_ops;
+
+/// A set of bonds. Copy `pls_default_bonds_def()` and change what you need.
+typedef struct pls_bonds_def
+{
+    char name[PLS_NAME_SIZE];
+    const pls_bond_ops *ops;   ///< required; must outlive the world
+    const double *values;      ///< its parameters in order of its table; null: all defaults
+    const pls_group_id *group; ///< bodies of these groups are its points; null: all bodies that can move or are driven
+    size_t group_count;
+    double horizon; ///< [m], required: bonds join all points no further apart now
+    double
+        spacing; ///< of points [m], over which a bond's volume fades at the horizon; 0: from the volumes of its two points; < 0: volumes do not fade
+    pls_influence influence;
+    double (*weight)(void *context, double xi); ///< for PLS_INFLUENCE_FUNCTION: >= 0; called from several threads at once
+    void *context;                              ///< of `weight`; used while the set is made
+    pls_correction correction;
+    pls_plane plane;
+    double critical_stretch; ///< bonds longer by more than this part break and never heal; infinite (default): none do
+    double
+        fracture_energy; ///< G [J/m^2]: the critical stretch at which a plane that is torn apart takes so much (Silling and Askari 2005); NaN (default): not given
+    uint32_t cookie;
+} pls_bonds_def;
+
+pls_bonds_def pls_default_bonds_def(void);
+
+/// Join bodies as they lie now. For laws of peridynamics each is a point of volume mass / density of its material. While a bond holds, its two bodies do not touch.
+/// Moduli are those that materials have now; where these change later, bonds keep theirs.
+/// INVALID_ARGUMENT: two points in one place, a point without bonds, moduli the law cannot have, a box with less than two horizons between periodic faces.
+pls_status pls_world_add_bonds(struct pls_world *world, const pls_bonds_def *def, pls_bonds_id *id);
+/// A null id when there is none of that name.
+pls_bonds_id pls_world_find_bonds(const struct pls_world *world, const char *name);
+
+bool pls_world_has_bonds(const struct pls_world *world);
+
+/// Figures of a set.
+typedef struct pls_bonds_figures
+{
+    size_t points;
+    size_t bonds;         ///< of either direction: each joins two points and counts twice
+    size_t broken;        ///< likewise
+    size_t bytes;         ///< held
+    double energy;        ///< stored now [J]
+    double energy_broken; ///< that bonds held when they broke [J]
+} pls_bonds_figures;
+pls_status pls_world_bonds_figures(const struct pls_world *world, pls_bonds_id id, pls_bonds_figures *figures);
+/// Numbers of all sets together; energies are left out (0).
+pls_bonds_figures pls_world_all_bonds(const struct pls_world *world);
+/// Part of its bonds that a body has lost in a set: 0 whole, 1 none left; NaN when the body is no point of it.
+double pls_world_bonds_damage(const struct pls_world *world, pls_bonds_id id, pls_body_id body);
+/// Break the bonds of a set that cross a triangle (2D: a segment a-b) now: a crack there from the start. Returns in `cut` how many, of either direction.
+pls_status pls_world_cut_bonds(struct pls_world *world, pls_bonds_id id, pls_vec3 a, pls_vec3 b, pls_vec3 c, size_t *cut);
+
+/// Built-in bond laws; the list ends with null.
+const pls_bond_ops *const *pls_builtin_bonds(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,635 @@
+// bonds.c -- sets of bonds in a world.
+
+#include "step/bonds.h"
+
+#include "base/alloc.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "bond/bond_set.h"
+#include "bond/influence.h"
+#include "math/lanczos.h"
+#include "step/contact_rates.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { COOKIE = 0x706c7332 };
+
+static const double margin = 1.03; ///< Lanczos values come from below
+
+pls_bonds_def pls_default_bonds_def(void)
+{
+    return (pls_bonds_def){.influence = PLS_INFLUENCE_INVERSE, .critical_stretch = INFINITY, .fracture_energy = NAN, .cookie = COOKIE};
+}
+
+// ---- making --------------------------------------------------------------------------------------------------------------------------------------------
+
+static pls_status check_def(const pls_world *world, const pls_bonds_def *def)
+{
+    if (def->cookie != COOKIE) return pls_fail(PLS_INVALID_ARGUMENT, "start from pls_default_bonds_def() and change what you need");
+    if (!def->name[0]) return pls_fail(PLS_INVALID_ARGUMENT, "a set of bonds needs a name");
+    if (pls_world_find_bonds(world, def->name).index1) return pls_fail(PLS_DUPLICATE, "there is a set of bonds '%s' already", def->name);
+    if (!def->ops) return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s' need a law", def->name);
+    if (def->ops->api_version != PLS_API_VERSION)
+        return pls_fail(PLS_VERSION, "bond law '%s' is made for version %u of the interface; this is version %d: compile it anew",
+                        def->ops->name ? def->ops->name : "?", def->ops->api_version, PLS_API_VERSION);
+    if (!def->ops->name || (def->ops->pair ? !def->ops->prepare || !def->ops->stiffness : !def->ops->linear))
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "bonds '%s': their law lacks a name, or `linear`, or of `pair`, `prepare` and `stiffness` one", def->name);
+    if (!(def->horizon > 0.0) || !isfinite(def->horizon))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the horizon is %g m; it must be positive", def->name, def->horizon);
+    if (isnan(def->spacing) || isinf(def->spacing))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the spacing is %g m", def->name, def->spacing);
+    if (!(def->critical_stretch > 0.0))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the critical stretch is %g; it must be positive", def->name,
+                        def->critical_stretch);
+    if (!isnan(def->fracture_energy) && !(def->fracture_energy > 0.0 && isfinite(def->fracture_energy)))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the fracture energy is %g J/m^2; it must be positive", def->name,
+                        def->fracture_energy);
+    if (!isnan(def->fracture_energy) && isfinite(def->critical_stretch))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': give the critical stretch or the fracture energy, not both", def->name);
+    if (def->influence == PLS_INFLUENCE_FUNCTION && !def->weight)
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the influence is a function, but none is given", def->name);
+    for (size_t g = 0; g < def->group_count; ++g)
+        if (def->group[g].index1 < 1 || def->group[g].index1 > world->group_count)
+            return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': a group of theirs does not exist", def->name);
+    return PLS_OK;
+}
+
+static bool is_point(const pls_world *world, const pls_bonds_def *def, uint32_t row)
+{
+    const pls_body_kind *kind = &world->bodies.kind[row];
+    if (kind->flags & PLS_BODY_UNBOUNDED) return false;
+    for (size_t g = 0; g < def->group_count; ++g)
+        if (def->group[g].index1 == kind->group) return true;
+    return def->group_count == 0;
+}
+
+/// Points in order of numbers, and the material of every body.
+static pls_status collect_points(const pls_world *world, const pls_bonds_def *def, pls_bond_point *point, uint16_t *material, size_t *count)
+{
+    const pls_bodies *b = &world->bodies;
+    const double dimension = world->def.dimension;
+    *count = 0;
+    for (size_t n = 0; n < b->numbers; ++n)
+    {
+        const uint32_t row = b->row_of[n];
+        if (row == PLS_NO_ROW || !is_point(world, def, row)) continue;
+        const pls_body_place *p = &b->place[row];
+        const pls_material *m = &world->laws.material[b->kind[row].material];
+        const double volume = b->mass[row].mass / m->values.density;
+        if (!def->ops->pair && (!(volume > 0.0) || !isfinite(volume)))
+            return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': body %zu has no volume: material '%s' needs a density", def->name, n,
+                            m->name);
+        material[n] = b->kind[row].material;
+        point[(*count)++] =
+            (pls_bond_point){.x = {p->x, p->y, p->z},
+                             .volume = volume,
+                             .spacing = def->spacing != 0.0 ? def->spacing : pow(volume / world->domain.thickness, 1.0 / dimension),
+                             .number = (uint32_t)n,
+                             .generation = b->kind[row].generation};
+    }
+    return *count > 0 ? PLS_OK
+                      : pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s' have no points: there are no bodies in their groups", def->name);
+}
+
+/// The law's parameters: given ones, or defaults; checked.
+static pls_status take_values(const pls_bonds_def *def, double values[PLS_MAX_VALUES])
+{
+    char owner[PLS_NAME_SIZE + 32];
+    pls_parameters_default(def->ops->parameters, values);
+    if (def->values) memcpy(values, def->values, (size_t)pls_parameter_values(def->ops->parameters) * sizeof *values);
+    snprintf(owner, sizeof owner, "bond law '%s'", def->ops->name);
+    return pls_parameters_check(def->ops->parameters, values, owner);
+}
+
+/// What the law says of a material.
+static pls_status ask_about(const pls_world *world, const pls_bonds_def *def, const double *values, size_t m, pls_bond_coefficients *law,
+                            double constants[PLS_BOND_MAX_CONSTANTS])
+{
+    const pls_bond_setting setting = {.dimension = world->def.dimension, .plane = def->plane, .material = world->laws.material[m].values};
+    const pls_status status = def->ops->pair ? def->ops->prepare(values, &setting, constants) : def->ops->linear(values, &setting, law);
+    return status == PLS_OK ? PLS_OK : pls_fail_context(status, "bonds '%s', material '%s': ", def->name, world->laws.material[m].name);
+}
+
+/// What the law says of every material that has points; a pair law must say the same of all.
+static pls_status ask_law(const pls_world *world, const pls_bonds_def *def, const pls_bond_point *point, size_t count,
+                          const uint16_t *material, pls_bond_coefficients *law, double constants[PLS_BOND_MAX_CONSTANTS])
+{
+    double values[PLS_MAX_VALUES];
+    bool known = false;
+    PLS_TRY(take_values(def, values));
+    for (size_t m = 0; m < world->laws.material_count; ++m)
+    {
+        bool used = false;
+        double own[PLS_BOND_MAX_CONSTANTS] = {0};
+        for (size_t p = 0; p < count && !used; ++p) used = material[point[p].number] == m;
+        if (!used) continue;
+        PLS_TRY(ask_about(world, def, values, m, &law[m], own));
+        if (known && memcmp(own, constants, sizeof own) != 0)
+            return pls_fail(
+                PLS_INVALID_ARGUMENT,
+                "bonds '%s': law '%s' joins bodies of one material, but '%s' has other values than those before it; give sets of their own",
+                def->name, def->ops->name, world->laws.material[m].name);
+        memcpy(constants, own, sizeof own);
+        known = true;
+    }
+    return PLS_OK;
+}
+
+/// The critical stretch that the fracture energy asks for, which must be that of all materials.
+static pls_status find_stretch(const pls_world *world, const pls_bonds_def *def, const pls_bond_coefficients *law, double *stretch)
+{
+    const int d = world->def.dimension;
+    *stretch = def->critical_stretch;
+    if (isnan(def->fracture_energy)) return PLS_OK;
+    if (def->ops->pair)
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "bonds '%s': law '%s' breaks by its own strength or a critical stretch, not by a fracture energy", def->name,
+                        def->ops->name);
+    for (size_t m = 0; m < world->laws.material_count; ++m)
+    {
+        if (law[m].extension == 0.0) continue;                                               // no points of it
+        const double bulk = (d * law[m].dilation + law[m].extension) / (d == 3 ? 9.0 : 4.0); // what a uniform dilation meets
+        const double own = pls_critical_stretch(def, d, bulk, def->fracture_energy);
+        if (!isfinite(own) || !(own > 0.0))
+            return pls_fail(PLS_INVALID_ARGUMENT,
+                            "bonds '%s': no critical stretch follows from a fracture energy of %g J/m^2; is the influence function "
+                            "positive below the horizon?",
+                            def->name, def->fracture_energy);
+        if (isfinite(*stretch) && !(fabs(own - *stretch) <= 1e-9 * own))
+            return pls_fail(PLS_INVALID_ARGUMENT,
+                            "bonds '%s': one fracture energy means other critical stretches in other materials (%g and %g); give "
+                            "critical_stretch, or sets of their own",
+                            def->name, *stretch, own);
+        *stretch = own;
+    }
+    return PLS_OK;
+}
+
+static pls_status make(pls_world *world, const pls_bonds_def *def, pls_bond_set *set)
+{
+    pls_bond_point *point = NULL;
+    uint16_t *material = NULL;
+    pls_bond_coefficients *law = NULL;
+    size_t count = 0;
+    pls_status status = pls_allocate(&point, world->bodies.numbers, sizeof *point, "points of bonds");
+    if (status == PLS_OK) status = pls_allocate(&material, world->bodies.numbers, sizeof *material, "points of bonds");
+    if (status == PLS_OK) status = pls_allocate(&law, world->laws.material_count, sizeof *law, "points of bonds");
+    if (status == PLS_OK) status = collect_points(world, def, point, material, &count);
+    double constants[PLS_BOND_MAX_CONSTANTS] = {0};
+    if (status == PLS_OK) status = ask_law(world, def, point, count, material, law, constants);
+    pls_bond_plan plan = {.def = def, .law = law, .constants = constants, .material = material};
+    if (status == PLS_OK) status = find_stretch(world, def, law, &plan.stretch);
+    if (status == PLS_OK)
+    {
+        status = pls_bond_set_make(set, &plan, point, count, &world->bodies, &world->domain);
+        point = NULL; // the set's
+    }
+    pls_release(&point);
+    pls_release(&material);
+    pls_release(&law);
+    return status;
+}
+
+static pls_status find_stiffness(const pls_world *world, pls_bond_set *set);
+
+/// Bodies that are bonded now touch no longer.
+static void drop_contacts(pls_world *world, const pls_bond_set *set)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < world->memory.count; ++k)
+        if (!pls_bond_holds(set, world->memory.entry[k].number_i, world->memory.entry[k].number_j))
+            world->memory.entry[kept++] = world->memory.entry[k];
+    world->memory.count = kept;
+    kept = 0;
+    for (size_t k = 0; k < world->records.count; ++k)
+        if (!pls_bond_holds(set, world->records.entry[k].number_i, world->records.entry[k].number_j))
+            world->records.entry[kept++] = world->records.entry[k];
+    world->records.count = kept;
+}
+
+pls_status pls_world_add_bonds(pls_world *world, const pls_bonds_def *def, pls_bonds_id *id)
+{
+    *id = (pls_bonds_id){0};
+    PLS_TRY(check_def(world, def));
+    if (world->bond_count >= UINT16_MAX - 1) return pls_fail(PLS_LIMIT_EXCEEDED, "a world holds at most %d sets of bonds", UINT16_MAX - 1);
+    PLS_TRY(pls_reserve(&world->bond, &world->bond_capacity, world->bond_count + 1, sizeof *world->bond, "sets of bonds"));
+    PLS_TRY(pls_neighbours_detach(world));
+    pls_bond_set *set = &world->bond[world->bond_count];
+    PLS_TRY(make(world, def, set));
+    pls_status status = find_stiffness(world, set);
+    if (status == PLS_OK && !isfinite(set->stiffness))
+        status =
+            pls_fail(PLS_NOT_A_NUMBER, "bonds '%s': their stiffness is no number; are moduli, masses and lengths in SI units?", def->name);
+    if (status != PLS_OK)
+    {
+        pls_bond_set_free(set);
+        return status;
+    }
+    drop_contacts(world, set);
+    id->index1 = (uint16_t)++world->bond_count;
+    return PLS_OK;
+}
+
+void pls_bonds_free(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s) pls_bond_set_free(&world->bond[s]);
+    pls_release(&world->bond);
+}
+
+// ---- a step ----------------------------------------------------------------------------------------------------------------------------------------------
+
+/// A thread's points of a set: whole blocks.
+static void share_of(const pls_bond_set *set, int thread, int threads, size_t *first, size_t *last)
+{
+    const size_t blocks = pls_block_count(set->family.count, PLS_BOND_BLOCK);
+    *first = blocks * (size_t)thread / (size_t)threads * PLS_BOND_BLOCK;
+    *last = blocks * ((size_t)thread + 1) / (size_t)threads * PLS_BOND_BLOCK;
+    if (*first > set->family.count) *first = set->family.count;
+    if (*last > set->family.count) *last = set->family.count;
+}
+
+void pls_bonds_place(pls_world *world, int thread, int threads)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        size_t first, last;
+        share_of(&world->bond[s], thread, threads, &first, &last);
+        pls_bond_take_places(&world->bond[s], &world->bodies, first, last);
+    }
+}
+
+void pls_bonds_placed(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s) pls_bond_take_ghosts(&world->bond[s], &world->domain);
+}
+
+bool pls_bonds_dilate_at_all(const pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (world->bond[s].dilates) return true;
+    return false;
+}
+
+void pls_bonds_dilate(pls_world *world, int thread, int threads)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        size_t first, last;
+        share_of(&world->bond[s], thread, threads, &first, &last);
+        if (world->bond[s].dilates) PLS_SIMD_SELECT(pls_bond_dilate)(&world->bond[s], first, last);
+    }
+}
+
+void pls_bonds_dilated(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (world->bond[s].dilates) pls_bond_take_spread(&world->bond[s]);
+    pls_bonds_placed(world);
+}
+
+void pls_bonds_act(pls_world *world, int thread, int threads)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        size_t first, last;
+        share_of(&world->bond[s], thread, threads, &first, &last);
+        const bool links = world->bond[s].links.ops != NULL;
+        if (first < last && (links ? PLS_SIMD_SELECT(pls_link_act) : PLS_SIMD_SELECT(pls_bond_act))(&world->bond[s], first, last))
+            __atomic_store_n(&world->bond[s].any_overlong, true, __ATOMIC_RELAXED);
+    }
+}
+
+/// Rows of a set as bodies are now: scratch of the step, so a world that is only looked at may fill it.
+static void take_rows(const pls_world *world, pls_bond_set *set)
+{
+    pls_bond_take_places(set, &world->bodies, 0, set->family.count);
+    pls_bond_take_ghosts(set, &world->domain);
+}
+
+bool pls_bonds_hold(const pls_world *world, uint32_t a, uint32_t b)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (pls_bond_holds(&world->bond[s], a, b)) return true;
+    return false;
+}
+
+void pls_bonds_note_damage(pls_world *world, uint32_t number)
+{
+    size_t lost = 0, all = 0;
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        const pls_bond_set *set = &world->bond[s];
+        const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT;
+        if (p == PLS_NO_POINT) continue;
+        lost += pls_bond_lost(set, p);
+        all += set->family.size[p];
+    }
+    const uint32_t row = world->bodies.row_of[number];
+    if (row != PLS_NO_ROW && all > 0) world->bodies.damage[row] = (float)((double)lost / (double)all);
+}
+
+size_t pls_bonds_count(const pls_world *world)
+{
+    size_t count = 0;
+    for (size_t s = 0; s < world->bond_count; ++s) count += world->bond[s].family.bonds;
+    return count;
+}
+
+size_t pls_bonds_points(const pls_world *world)
+{
+    size_t count = 0;
+    for (size_t s = 0; s < world->bond_count; ++s) count += world->bond[s].family.count;
+    return count;
+}
+
+/// Two bodies may touch from now on, unless another set holds them.
+static void let_touch(void *context, uint32_t a, uint32_t b)
+{
+    pls_world *world = context;
+    pls_bonds_note_damage(world, a);
+    pls_bonds_note_damage(world, b);
+    if (pls_bonds_hold(world, a, b)) return;
+    const uint32_t row_a = world->bodies.row_of[a], row_b = world->bodies.row_of[b];
+    if (row_a == PLS_NO_ROW || row_b == PLS_NO_ROW) return;
+    world->overlap_due = 0.0; // they may overlap already
+    if (pls_pair_is_solid(&world->bodies, row_a, row_b))
+        world->list.stale = true; // lists of solids have no pairs that are held
+    else
+        pls_pair_list_let_go(&world->list, row_a, row_b);
+}
+
+void pls_bonds_acted(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (world->bond[s].any_overlong)
+            pls_bond_break_overlong(&world->bond[s], &world->bodies, &world->domain, world->dt, let_touch, world);
+}
+
+void pls_bonds_leave(pls_world *world, uint32_t number)
+{
+    for (size_t k = 0; k < world->bond_count; ++k)
+    {
+        pls_bond_set *set = &world->bond[k];
+        const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT;
+        if (p == PLS_NO_POINT) continue;
+        take_rows(world, set);
+        for (size_t slot = (size_t)set->family.start[p] * PLS_BOND_VECTOR, n = 0; n < set->family.size[p]; ++n, ++slot)
+        {
+            pls_bond_break(set, (pls_bond_end){p, slot});
+            pls_bonds_note_damage(world, set->family.point[pls_point_behind(&set->family, set->family.partner[slot])].number);
+        }
+        set->point_of[number] = PLS_NO_POINT; // another body may get the number
+    }
+}
+
+// ---- the stable step -----------------------------------------------------------------------------------------------------------------------------------------
+
+/// The stiffness of a set as bodies lie now, between displacements times roots of masses.
+typedef struct stiffness_operator
+{
+    const pls_bond_set *set;
+    double *root;         ///< per point: root of its inverse mass, 0 where no force moves it
+    double *root_inertia; ///< the same of its smallest moment of inertia, for pair laws
+    double *spread;       ///< scratch per point: A
+    int dimension;
+} stiffness_operator;
+
+/// Change of a bond's length, and its direction.
+static double lengthening(const stiffness_operator *o, size_t p, size_t slot, const double *x, double y[3])
+{
+    const pls_families *f = &o->set->family;
+    const double *a = o->set->row[p], *b = o->set->row[f->partner[slot]];
+    const size_t q = pls_point_behind(f, f->partner[slot]);
+    double length = 0.0, change = 0.0;
+    for (int c = 0; c < 3; ++c) y[c] = b[c] - a[c], length += y[c] * y[c];
+    length = sqrt(length);
+    for (size_t c = 0; c < 3; ++c)
+    {
+        y[c] /= length;
+        change += y[c] * (o->root[q] * x[3 * q + c] - o->root[p] * x[3 * p + c]);
+    }
+    return change;
+}
+
+static void multiply(const void *context, const double *x, double *y)
+{
+    const stiffness_operator *o = context;
+    const pls_bond_set *set = o->set;
+    const pls_families *f = &set->family;
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < f->count; ++p)
+    {
+        double sum = 0.0, unit[3];
+        for (size_t slot = (size_t)f->start[p] * PLS_BOND_VECTOR, k = 0; k < f->size[p]; ++k, ++slot)
+            sum += set->weight[slot] * lengthening(o, p, slot, x, unit);
+        o->spread[p] = set->dilation[p] * sum;
+    }
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < f->count; ++p)
+    {
+        double sum[3] = {0}, unit[3];
+        for (size_t slot = (size_t)f->start[p] * PLS_BOND_VECTOR, k = 0; k < f->size[p]; ++k, ++slot)
+        {
+            const double change = lengthening(o, p, slot, x, unit), stiffness = set->twice * (double)set->share[slot];
+            const double tension = set->weight[slot] *
+                                   (o->spread[p] + o->spread[pls_point_behind(f, f->partner[slot])] + stiffness * change / f->length[slot]);
+            for (int c = 0; c < o->dimension; ++c) sum[c] -= tension * unit[c];
+        }
+        for (size_t c = 0; c < 3; ++c) y[3 * p + c] = o->root[p] * sum[c];
+    }
+}
+
+/// A bond that turns with its bodies, as an Euler-Bernoulli beam that has not yet moved: forces and torques on the own end for displacements and rotations of both.
+static void add_link(const stiffness_operator *o, size_t p, size_t slot, const double *x, double f[6])
+{
+    const pls_families *fam = &o->set->family;
+    const double *a = o->set->links.pose[p], *b = o->set->links.pose[fam->partner[slot]];
+    const size_t q = pls_point_behind(fam, fam->partner[slot]);
+    const pls_vec3 r = pls_vec(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    const double l = pls_length(r);
+    const pls_vec3 e = pls_scale(r, 1.0 / l);
+    pls_pair_stiffness k;
+    o->set->links.ops->stiffness(o->set->links.constants, fam->length[slot], &k);
+    pls_vec3 u = pls_vec(0, 0, 0), turn[2];
+    const size_t end[2] = {p, q};
+    for (int n = 0; n < 2; ++n)
+    {
+        const double *of = x + 6 * end[n], m = o->root[end[n]], i = o->root_inertia[end[n]];
+        u = pls_add(u, pls_scale(pls_vec(of[0], of[1], of[2]), n == 0 ? -m : m));
+        turn[n] = pls_scale(pls_vec(of[3], of[4], of[5]), i);
+    }
+    const pls_vec3 chord = pls_scale(pls_cross(e, u), 1.0 / l);
+    const double along = pls_dot(u, e), twist = pls_dot(pls_sub(turn[1], turn[0]), e);
+    for (int n = 0; n < 2; ++n)
+    {
+        turn[n] = pls_sub(turn[n], chord);
+        turn[n] = pls_sub(turn[n], pls_scale(e, pls_dot(turn[n], e)));
+    }
+    const pls_vec3 shear = pls_scale(pls_cross(pls_add(turn[0], turn[1]), e), -6.0 * k.bending / l);
+    const pls_vec3 bend = pls_scale(pls_add(pls_scale(turn[0], 2.0), turn[1]), -2.0 * k.bending);
+    const pls_vec3 force = pls_add(pls_scale(e, k.axial * along), shear), torque = pls_add(pls_scale(e, k.torsion * twist), bend);
+    f[0] += force.x, f[1] += force.y, f[2] += force.z, f[3] += torque.x, f[4] += torque.y, f[5] += torque.z;
+}
+
+static void multiply_links(const void *context, const double *x, double *y)
+{
+    const stiffness_operator *o = context;
+    const pls_families *f = &o->set->family;
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < f->count; ++p)
+    {
+        double sum[6] = {0};
+        for (size_t slot = (size_t)f->start[p] * PLS_BOND_VECTOR, k = 0; k < f->size[p]; ++k, ++slot) add_link(o, p, slot, x, sum);
+        for (size_t c = 0; c < 6; ++c)
+        {
+            const bool free = o->dimension == 3 || c < 2 || c == 5;
+            y[6 * p + c] = free ? -(c < 3 ? o->root[p] : o->root_inertia[p]) * sum[c] : 0.0;
+        }
+    }
+}
+
+static pls_status allocate_operator(stiffness_operator *o, size_t count, double **x)
+{
+    const size_t numbers = o->set->links.ops ? 6 : 3;
+    PLS_TRY(pls_allocate(x, numbers * count, sizeof **x, "the stable step"));
+    PLS_TRY(pls_allocate(&o->root, count, sizeof *o->root, "the stable step"));
+    PLS_TRY(pls_allocate(&o->root_inertia, count, sizeof *o->root_inertia, "the stable step"));
+    return pls_allocate(&o->spread, count, sizeof *o->spread, "the stable step");
+}
+
+static void fill_operator(const pls_world *world, stiffness_operator *o, double *x)
+{
+    const size_t numbers = o->set->links.ops ? 6 : 3;
+    for (size_t p = 0; p < o->set->family.count; ++p)
+    {
+        const uint32_t number = o->set->family.point[p].number, row = world->bodies.row_of[number];
+        pls_random random = pls_random_stream(0, number, PLS_FOR_USER);
+        const bool moves = row != PLS_NO_ROW && world->bodies.load[row].inv_mass > 0.0;
+        o->root[p] = moves ? sqrt(world->bodies.load[row].inv_mass) : 0.0;
+        o->root_inertia[p] = moves ? 1.0 / sqrt(pls_smallest_moment(&world->bodies.mass[row], o->dimension)) : 0.0;
+        for (size_t c = 0; c < numbers; ++c)
+        {
+            const double u = pls_random_uniform(&random) - 0.5;
+            const bool free = o->dimension == 3 || c < 2 || c == 5;
+            x[numbers * p + c] = moves && free ? u : 0.0;
+        }
+    }
+}
+
+static pls_status find_stiffness(const pls_world *world, pls_bond_set *set)
+{
+    stiffness_operator o = {.set = set, .dimension = world->def.dimension};
+    double *x = NULL;
+    const size_t count = set->family.count;
+    pls_bond_take_places(set, &world->bodies, 0, count);
+    pls_bond_take_ghosts(set, &world->domain);
+    pls_status status = allocate_operator(&o, count, &x);
+    if (status == PLS_OK) fill_operator(world, &o, x);
+    if (status == PLS_OK)
+        status = set->links.ops ? pls_lanczos_largest(multiply_links, &o, 6 * count, x, &set->stiffness)
+                                : pls_lanczos_largest(multiply, &o, 3 * count, x, &set->stiffness);
+    set->stiffness *= margin;
+    pls_release(&x);
+    pls_release(&o.root);
+    pls_release(&o.root_inertia);
+    pls_release(&o.spread);
+    return status;
+}
+
+double pls_bonds_rate(const pls_world *world, uint32_t number, bool of_rotation)
+{
+    double sum = 0.0;
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        const pls_bond_set *set = &world->bond[s];
+        if (number < set->numbers && set->point_of[number] != PLS_NO_POINT && (!of_rotation || set->links.ops)) sum += set->stiffness;
+    }
+    return sum;
+}
+
+// ---- asking ------------------------------------------------------------------------------------------------------------------------------------------------
+
+pls_bonds_id pls_world_find_bonds(const pls_world *world, const char *name)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (strcmp(world->bond[s].name, name) == 0) return (pls_bonds_id){(uint16_t)(s + 1)};
+    return (pls_bonds_id){0};
+}
+
+bool pls_world_has_bonds(const pls_world *world) { return world->bond_count > 0; }
+
+/// Null, with the reason, when there is none.
+static pls_bond_set *find_set(const pls_world *world, pls_bonds_id id)
+{
+    if (id.index1 >= 1 && id.index1 <= world->bond_count) return &world->bond[id.index1 - 1];
+    pls_fail(PLS_INVALID_ARGUMENT, "an id names no bonds of this world");
+    return NULL;
+}
+
+void pls_bonds_energies(const pls_world *world, double *stored, double *broken)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        pls_bond_set *set = &world->bond[s];
+        take_rows(world, set);
+#pragma omp parallel for schedule(static)
+        for (size_t p = 0; p < set->family.count; ++p)
+        {
+            stored[set->family.point[p].number] += pls_bond_energy(set, p);
+            broken[set->family.point[p].number] += set->broken[p];
+        }
+    }
+}
+
+pls_status pls_world_bonds_figures(const pls_world *world, pls_bonds_id id, pls_bonds_figures *figures)
+{
+    pls_bond_set *set = find_set(world, id);
+    if (!set) return PLS_INVALID_ARGUMENT;
+    *figures =
+        (pls_bonds_figures){.points = set->family.count, .bonds = set->family.bonds, .broken = set->gone, .bytes = pls_bond_set_bytes(set)};
+    double *energy = NULL;
+    PLS_TRY(pls_allocate(&energy, set->family.count, sizeof *energy, "energies of bonds"));
+    take_rows(world, set);
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < set->family.count; ++p) energy[p] = pls_bond_energy(set, p);
+    figures->energy = pls_sum(energy, set->family.count, 1);
+    figures->energy_broken = pls_sum(set->broken, set->family.count, 1);
+    pls_release(&energy);
+    return PLS_OK;
+}
+
+pls_bonds_figures pls_world_all_bonds(const pls_world *world)
+{
+    pls_bonds_figures sum = {0};
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        const pls_bond_set *set = &world->bond[s];
+        sum.points += set->family.count, sum.bonds += set->family.bonds, sum.broken += set->gone, sum.bytes += pls_bond_set_bytes(set);
+    }
+    return sum;
+}
+
+double pls_world_bonds_damage(const pls_world *world, pls_bonds_id id, pls_body_id body)
+{
+    const uint32_t number = body.index1 - 1;
+    if (id.index1 < 1 || id.index1 > world->bond_count || pls_body_row(world, body) == PLS_NO_ROW) return NAN;
+    const pls_bond_set *set = &world->bond[id.index1 - 1];
+    const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT;
+    return p == PLS_NO_POINT ? NAN : (double)pls_bond_lost(set, p) / (double)set->family.size[p];
+}
+
+pls_status pls_world_cut_bonds(pls_world *world, pls_bonds_id id, pls_vec3 a, pls_vec3 b, pls_vec3 c, size_t *cut)
+{
+    pls_bond_set *set = find_set(world, id);
+    *cut = 0;
+    if (!set) return PLS_INVALID_ARGUMENT;
+    PLS_TRY(pls_neighbours_detach(world));
+    take_rows(world, set);
+    const size_t before = set->gone;
+    pls_bond_cut(set, world->def.dimension, a, b, c);
+    *cut = set->gone - before;
+    for (size_t p = 0; p < set->family.count; ++p) pls_bonds_note_damage(world, set->family.point[p].number);
+    return PLS_OK;
+}
