@@ -106,34 +106,34 @@ static size_t fullest_of(const pls_bond_set *set, const family_sums *sums)
     return fullest;
 }
 
-/// B of every point. Of independent springs, and where volumes of families correct, m is that of the fullest family: inside a body a lattice then has the moduli asked for. (That of a continuum
+/// 1/m of every point. Of independent springs, and where volumes of families correct, m is that of the fullest family: inside a body a lattice then has the moduli asked for. (That of a continuum
 /// would leave a lattice of three spacings an eighth too soft.)
-static void extension_factors(const pls_bond_set *set, const pls_bond_plan *plan, const family_sums *sums, double *b)
+static void inverse_weights(const pls_bond_set *set, const pls_bond_plan *plan, const family_sums *sums, double *inverse)
 {
     const bool common = plan->def->ops->pairwise || plan->def->correction == PLS_CORRECTION_VOLUME;
     const double fullest = sums[fullest_of(set, sums)].weighted;
-    for (size_t p = 0; p < set->family.count; ++p)
-        b[p] = plan->law[plan->material[set->family.point[p].number]].extension / (common ? fullest : sums[p].weighted);
+    for (size_t p = 0; p < set->family.count; ++p) inverse[p] = 1.0 / (common ? fullest : sums[p].weighted);
 }
 
-/// What a family makes of a unit stretch along each axis: the dilatation, and what bonds store, both but for common factors.
+/// What a family makes of a unit stretch along each axis: the dilatation, and what bonds store, both but for common factors, per volume of its point and of a material of unit stiffness: of what is
+/// at fault with the family, its shape alone.
 typedef struct stretches
 {
     double dilated[3], stored[3];
 } stretches;
 
-static stretches stretches_of(const pls_bond_set *set, const pls_domain *domain, size_t p)
+static stretches stretches_of(const pls_bond_set *set, const pls_domain *domain, const family_sums *sums, size_t p)
 {
     stretches sum = {{0.0}, {0.0}};
-    const double moduli = set->dilation[p] != 0.0 ? sqrt(fabs(set->dilation[p])) : 1.0; // A enters twice
+    const double per_volume = 1.0 / set->family.point[p].volume;
     for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + set->family.size[p]; ++slot)
     {
         double n[3];
         unit_of(set, domain, p, slot, n);
-        const double g = set->weight[slot] * set->family.length[slot];
+        const double g = set->weight[slot] * set->family.length[slot] * per_volume;
         for (int c = 0; c < 3; ++c)
         {
-            sum.dilated[c] += moduli * g * n[c] * n[c];
+            sum.dilated[c] += g / sums[p].weighted * n[c] * n[c];
             sum.stored[c] += g * (double)set->share[slot] * n[c] * n[c] * n[c] * n[c];
         }
     }
@@ -150,21 +150,21 @@ static double ellipsoid(const double n[3], const double a[3], const double b[3],
         const double part = full[c] > 0.0 ? 0.5 * (a[c] + b[c]) / full[c] : 1.0;
         sum += n[c] * n[c] * part * part;
     }
-    return 1.0 / sqrt(sum);
+    return sum > 0.0 ? 1.0 / sqrt(sum) : 1.0; // zero of bonds that weigh nothing
 }
 
 /// Correct each bond by what its families lack, time and again: bonds have two families, so that what helps one changes the other.
-static pls_status correct_by_energy(pls_bond_set *set, const pls_domain *domain, size_t fullest)
+static pls_status correct_by_energy(pls_bond_set *set, const pls_domain *domain, const family_sums *sums)
 {
     enum { PASSES = 12 };
     const pls_families *f = &set->family;
     stretches *now = NULL;
     PLS_TRY(pls_allocate(&now, f->count, sizeof *now, "the correction of surfaces"));
-    const stretches full = stretches_of(set, domain, fullest);
+    const stretches full = stretches_of(set, domain, sums, fullest_of(set, sums));
     for (int pass = 0; pass < PASSES; ++pass)
     {
 #pragma omp parallel for schedule(static)
-        for (size_t p = 0; p < f->count; ++p) now[p] = stretches_of(set, domain, p);
+        for (size_t p = 0; p < f->count; ++p) now[p] = stretches_of(set, domain, sums, p);
 #pragma omp parallel for schedule(static)
         for (size_t p = 0; p < f->count; ++p)
             for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + f->size[p]; ++slot)
@@ -181,12 +181,17 @@ static pls_status correct_by_energy(pls_bond_set *set, const pls_domain *domain,
     return PLS_OK;
 }
 
-/// What the law makes of the families.
-static pls_status load_law(pls_bond_set *set, const pls_bond_plan *plan, const pls_domain *domain, const family_sums *sums, const double *b)
+static double extension_of(const pls_bond_set *set, const pls_bond_plan *plan, size_t p)
+{
+    return plan->law[plan->material[set->family.point[p].number]].extension;
+}
+
+/// What the law makes of the families: B is extension/m. Shares are of unit stiffness until families are corrected.
+static pls_status load_law(pls_bond_set *set, const pls_bond_plan *plan, const pls_domain *domain, const family_sums *sums,
+                           const double *inverse)
 {
     const pls_families *f = &set->family;
     const size_t fullest = fullest_of(set, sums);
-    set->twice = 2.0 * b[fullest];
     for (size_t p = 0; p < f->count; ++p)
     {
         const double m = sums[p].weighted;
@@ -198,11 +203,23 @@ static pls_status load_law(pls_bond_set *set, const pls_bond_plan *plan, const p
         for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + f->size[p]; ++slot)
         {
             const uint32_t q = pls_point_behind(f, f->partner[slot]);
-            double both = b[p] + b[q];
+            double both = inverse[p] + inverse[q];
             if (plan->def->correction == PLS_CORRECTION_VOLUME) both *= 2.0 * sums[fullest].volume / (sums[p].volume + sums[q].volume);
-            set->share[slot] = (float)(both / set->twice);
+            set->share[slot] = (float)(both / (2.0 * inverse[fullest]));
         }
-    return plan->def->correction == PLS_CORRECTION_ENERGY ? correct_by_energy(set, domain, fullest) : PLS_OK;
+    if (plan->def->correction == PLS_CORRECTION_ENERGY) PLS_TRY(correct_by_energy(set, domain, sums));
+    const double stiffness = extension_of(set, plan, fullest);
+    set->twice = 2.0 * stiffness * inverse[fullest];
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < f->count; ++p)
+        for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + f->size[p]; ++slot)
+        {
+            const uint32_t q = pls_point_behind(f, f->partner[slot]);
+            const double a = extension_of(set, plan, p), b = extension_of(set, plan, q);
+            if (a == stiffness && b == stiffness) continue;
+            set->share[slot] *= (float)((a * inverse[p] + b * inverse[q]) / (stiffness * (inverse[p] + inverse[q])));
+        }
+    return PLS_OK;
 }
 
 static pls_status allocate(pls_bond_set *set)
@@ -235,18 +252,18 @@ static pls_status allocate_linear(pls_bond_set *set)
 static pls_status make_linear(pls_bond_set *set, const pls_bond_plan *plan, const pls_domain *domain)
 {
     family_sums *sums = NULL;
-    double *b = NULL;
+    double *inverse = NULL;
     PLS_TRY(allocate_linear(set));
     pls_status status = pls_allocate(&sums, set->family.count, sizeof *sums, "points of bonds");
-    if (status == PLS_OK) status = pls_allocate(&b, set->family.count, sizeof *b, "points of bonds");
+    if (status == PLS_OK) status = pls_allocate(&inverse, set->family.count, sizeof *inverse, "points of bonds");
     if (status == PLS_OK) status = weigh(set, plan, sums);
     if (status == PLS_OK)
     {
-        extension_factors(set, plan, sums, b);
-        status = load_law(set, plan, domain, sums, b);
+        inverse_weights(set, plan, sums, inverse);
+        status = load_law(set, plan, domain, sums, inverse);
     }
     pls_release(&sums);
-    pls_release(&b);
+    pls_release(&inverse);
     return status;
 }
 
@@ -383,16 +400,32 @@ double pls_bond_energy(const pls_bond_set *set, size_t point)
     return 0.5 * set->dilation[point] * spread * spread + 0.25 * stretched;
 }
 
+/// The first slot of a family whose partner is point q or a later one: families are in order of points.
+static size_t first_bond_to(const pls_bond_set *set, size_t p, uint32_t q)
+{
+    size_t low = first_slot(set, p), high = low + set->family.size[p];
+    while (low < high)
+    {
+        const size_t middle = low + (high - low) / 2;
+        if (pls_point_behind(&set->family, set->family.partner[middle]) < q)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /// The same bond in the partner's family.
 static pls_bond_end other_end(const pls_bond_set *set, pls_bond_end end)
 {
     const pls_families *f = &set->family;
     const uint32_t partner = f->partner[end.slot], q = pls_point_behind(f, partner);
     const pls_bond_ghost *image = partner < f->count ? NULL : &f->ghost[partner - f->count];
-    for (size_t slot = first_slot(set, q); slot < first_slot(set, q) + f->size[q]; ++slot)
+    for (size_t slot = first_bond_to(set, q, end.point); slot < first_slot(set, q) + f->size[q]; ++slot)
     {
         const uint32_t back = f->partner[slot];
-        if (pls_point_behind(f, back) != end.point || (back < f->count) != !image) continue;
+        if (pls_point_behind(f, back) != end.point) break;
+        if ((back < f->count) != !image) continue;
         const pls_bond_ghost *own = image ? &f->ghost[back - f->count] : NULL;
         if (!image || (own->shift[0] == -image->shift[0] && own->shift[1] == -image->shift[1] && own->shift[2] == -image->shift[2]))
             return (pls_bond_end){q, slot};
@@ -476,6 +509,12 @@ void pls_bond_read_broken(const pls_bond_set *set, uint8_t *broken)
         for (size_t slot = first_slot(set, p), k = 0; k < set->family.size[p]; ++k) *broken++ = !holds(set, slot + k);
 }
 
+static bool is_there(const pls_bond_point *point, const pls_bodies *bodies)
+{
+    return point->number < bodies->numbers && bodies->row_of[point->number] != PLS_NO_ROW &&
+           bodies->generation_of[point->number] == point->generation;
+}
+
 /// Flags must be those of either end, and a body that is gone has no bonds.
 static pls_status check_broken(const pls_bond_set *set, const pls_bodies *bodies)
 {
@@ -486,7 +525,7 @@ static pls_status check_broken(const pls_bond_set *set, const pls_bodies *bodies
             const pls_bond_end other = other_end(set, (pls_bond_end){(uint32_t)p, slot});
             if (holds(set, slot) != holds(set, other.slot))
                 return pls_fail(PLS_CORRUPT, "a saved bond of body %u in '%s' is broken at one end only", number, set->name);
-            if (holds(set, slot) && (number >= bodies->numbers || bodies->row_of[number] == PLS_NO_ROW))
+            if (holds(set, slot) && !is_there(&set->family.point[p], bodies))
                 return pls_fail(PLS_CORRUPT, "a saved bond in '%s' holds body %u, which is not there", set->name, number);
         }
     return PLS_OK;
@@ -498,9 +537,7 @@ pls_status pls_bond_check_restored(pls_bond_set *set, const pls_bodies *bodies)
     for (size_t p = 0; p < set->family.count; ++p)
     {
         const pls_bond_point *point = &set->family.point[p];
-        const bool there = point->number < bodies->numbers && bodies->row_of[point->number] != PLS_NO_ROW &&
-                           bodies->generation_of[point->number] == point->generation;
-        set->point_of[point->number] = there ? (uint32_t)p : PLS_NO_POINT;
+        set->point_of[point->number] = is_there(point, bodies) ? (uint32_t)p : PLS_NO_POINT;
     }
     return PLS_OK;
 }
@@ -563,14 +600,6 @@ bool pls_bond_holds(const pls_bond_set *set, uint32_t number, uint32_t partner)
     const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT,
                    q = partner < set->numbers ? set->point_of[partner] : PLS_NO_POINT;
     if (p == PLS_NO_POINT || q == PLS_NO_POINT) return false;
-    size_t low = first_slot(set, p), high = low + f->size[p];
-    while (low < high) // families are in order of points
-    {
-        const size_t middle = low + (high - low) / 2;
-        if (pls_point_behind(f, f->partner[middle]) < q)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < first_slot(set, p) + f->size[p] && pls_point_behind(f, f->partner[low]) == q && holds(set, low);
+    const size_t slot = first_bond_to(set, p, q);
+    return slot < first_slot(set, p) + f->size[p] && pls_point_behind(f, f->partner[slot]) == q && holds(set, slot);
 }

@@ -6,6 +6,8 @@
 #include "bond/bond_set.h"
 #include "bond/lanes.h"
 
+#include <float.h>
+
 enum {
     PARTS = PLS_BOND_VECTOR / PLS_W,
     AHEAD = 256 ///< bonds by which streams are fetched ahead: the processor's own fetching stops at each page of four kilobytes
@@ -88,9 +90,9 @@ bool PLS_SIMD(pls_bond_act)(pls_bond_set *set, size_t first, size_t last)
                 const size_t at = slot + k * PLS_W;
                 const bonds b = load(set, at, x);
                 const pls_vd e = b.length - b.xi, share = __builtin_convertvector(*(const floats *)(set->share + at), pls_vd);
-                // 1/(xi l) as l/(xi l^2), so that the division need not wait for the root.
-                const pls_vd factor =
-                    pls_vd_load(set->weight + at) * ((a + b.a) * b.xi + (twice * e) * share) * (b.length * (1.0 / (b.xi * b.square)));
+                // 1/(xi l) as l/(xi l^2), so that the division need not wait for the root; points of a broken bond may coincide.
+                const pls_vd factor = pls_vd_load(set->weight + at) * ((a + b.a) * b.xi + (twice * e) * share) *
+                                      (b.length * (1.0 / (b.xi * b.square + DBL_MIN)));
                 overlong |= pls_vd_less(stretch * b.xi, e);
                 for (int c = 0; c < 3; ++c) sum[c][k] = sum[c][k] + factor * b.d[c];
             }

@@ -66,14 +66,16 @@ static pls_status check_polygon(const pls_node *points)
         normal = pls_add(normal, pls_cross(u, v));
         size = fmax(size, pls_length(u));
     }
-    if (points->count >= 3 && !(pls_length(normal) > 0.0)) return pls_node_fail(points, NULL, "the corners of the crack lie on a line");
+    if (points->count >= 3 && !(pls_length(normal) > 1e-9 * size * size))
+        return pls_node_fail(points, NULL, "the corners of the crack lie on a line");
     normal = pls_unit(normal);
     for (size_t k = 0; points->count >= 3 && k < points->count; ++k)
     {
         const pls_vec3 a = corner_of(points, k), b = corner_of(points, k + 1), c = corner_of(points, k + 2);
         if (fabs(pls_dot(pls_sub(a, corner_of(points, 0)), normal)) > 1e-6 * size)
             return pls_node_fail(points->child[k], NULL, "the corners of the crack do not lie in a plane");
-        if (pls_dot(pls_cross(pls_sub(b, a), pls_sub(c, b)), normal) < 0.0)
+        const pls_vec3 fan = pls_cross(pls_sub(a, corner_of(points, 0)), pls_sub(b, corner_of(points, 0))); // turns back where edges cross
+        if (pls_dot(pls_cross(pls_sub(b, a), pls_sub(c, b)), normal) < -1e-9 * size * size || pls_dot(fan, normal) < -1e-9 * size * size)
             return pls_node_fail(points->child[(k + 1) % points->count], "cut it into convex ones", "the crack is not convex here");
     }
     return PLS_OK;

@@ -577,8 +577,10 @@ void pls_bonds_energies(const pls_world *world, double *stored, double *broken)
 #pragma omp parallel for schedule(static)
         for (size_t p = 0; p < set->family.count; ++p)
         {
-            stored[set->family.point[p].number] += pls_bond_energy(set, p);
-            broken[set->family.point[p].number] += set->broken[p];
+            const uint32_t number = set->family.point[p].number;
+            if (set->point_of[number] != p) continue; // the body left, and another may have its number
+            stored[number] += pls_bond_energy(set, p);
+            broken[number] += set->broken[p];
         }
     }
 }

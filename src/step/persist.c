@@ -148,6 +148,10 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
         header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || header->rows[PLS_TABLE_PAIRS] >= PLS_NO_ROW || !(header->dt > 0.0) ||
         !isfinite(header->time))
         return pls_fail(PLS_CORRUPT, "the saved state has an impossible header");
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (header->rows[PLS_TABLE_NUMBERS] < world->bond[s].numbers)
+            return pls_fail(PLS_CORRUPT, "the saved state knows %llu bodies, bonds '%s' have a body %zu",
+                            (unsigned long long)header->rows[PLS_TABLE_NUMBERS], world->bond[s].name, world->bond[s].numbers - 1);
     if (world->bodies.count > 0 && world->extent == 0.0) PLS_TRY(pls_measure_extent(world)); // the first arrangement, not the restored one
     pls_bodies *bodies = &world->bodies;
     pls_bodies_clear(bodies);

@@ -73,6 +73,38 @@ static void corrections_give_surfaces_the_energy_of_the_inside(void **state)
                 fabs(cube_energy("linear_solid", PLS_CORRECTION_NONE) - 1.0));
 }
 
+/// A correction makes up for what families lack, and for nothing else: neither for materials nor for volumes.
+static void corrections_leave_materials_and_volumes_what_they_are(void **state)
+{
+    (void)state;
+    const double s = 1e-4;
+    const char *const laws[] = {"bond_based", "linear_solid"};
+    for (int law = 0; law < 2; ++law)
+    {
+        lattice_plan plan = lattice_default(3, 10);
+        plan.count[0] = 24, plan.law = laws[law], plan.correction = PLS_CORRECTION_ENERGY;
+        if (law == 0) plan.shear = 0.6 * plan.bulk;
+        lattice alike = lattice_make(&plan);
+        plan.stiffer = 10.0;
+        lattice layered = lattice_make(&plan);
+        plan.stiffer = 0.0, plan.lighter = 0.5;
+        lattice half = lattice_make(&plan);
+        lattice *const all[] = {&alike, &layered, &half};
+        for (int k = 0; k < 3; ++k) lattice_deform(all[k], stretched, &s);
+        double whole = 0.0, light = 0.0;
+        for (size_t p = 0; p < alike.points; ++p)
+        {
+            const size_t i = p % plan.count[0];
+            whole += i > 0 ? lattice_energy(&alike, p) : 0.5 * lattice_energy(&alike, p);
+            light += lattice_energy(&half, p);
+            if (i > 8 && i < 15) continue; // families of both materials
+            assert_true(fabs(lattice_energy(&layered, p) / ((i < 12 ? 1.0 : 10.0) * lattice_energy(&alike, p)) - 1.0) < 1e-6);
+        }
+        assert_true(fabs(light / whole - 1.0) < 0.01);
+        for (int k = 0; k < 3; ++k) lattice_free(all[k]);
+    }
+}
+
 static void critical_stretches_are_those_of_the_literature(void **state)
 {
     (void)state;
@@ -106,7 +138,8 @@ static double grown(double dt_part)
     const pls_status status = pls_world_run(b.scene.world, 400);
     MUST(pls_world_bonds_figures(b.scene.world, b.bonds, &after));
     lattice_free(&b);
-    return status == PLS_OK ? after.energy / before.energy : INFINITY; // a body is lost
+    if (status == PLS_LOST_BODY) return INFINITY;
+    return status == PLS_OK ? after.energy / before.energy : NAN;
 }
 
 static void the_stable_step_is_the_limit(void **state)
@@ -172,6 +205,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(independent_springs_have_the_bulk_modulus_inside),
         cmocka_unit_test(corrections_give_surfaces_the_energy_of_the_inside),
+        cmocka_unit_test(corrections_leave_materials_and_volumes_what_they_are),
         cmocka_unit_test(critical_stretches_are_those_of_the_literature),
         cmocka_unit_test(the_stable_step_is_the_limit),
         cmocka_unit_test(wrong_sets_are_refused_with_the_reason),

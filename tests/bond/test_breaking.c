@@ -50,7 +50,7 @@ static void a_bond_breaks_at_its_critical_stretch(void **state)
     lattice b = make_pair(0.02, 1e-4);
     set_speeds(&b, -0.5, 0.5);
     double before = distance(&b);
-    while (figures_of(&b).broken == 0)
+    for (int k = 0; k < 1000 && figures_of(&b).broken == 0; ++k)
     {
         before = distance(&b);
         MUST(pls_step(b.scene.world));
@@ -209,6 +209,49 @@ static void a_state_does_not_mend_bonds(void **state)
     lattice_free(&b);
 }
 
+static void corrupt_states_are_refused(void **state)
+{
+    (void)state;
+    lattice b = make_torn(2e-3);
+    snapshot copy = {0};
+    MUST(snapshot_take(b.scene.world, &copy));
+    const uint64_t numbers = copy.header.rows[PLS_TABLE_NUMBERS], bodies = copy.header.rows[PLS_TABLE_BODIES];
+    copy.header.rows[PLS_TABLE_NUMBERS] = copy.header.rows[PLS_TABLE_BODIES] = numbers - 1;
+    assert_int_equal(snapshot_put(b.scene.world, &copy), PLS_CORRUPT);
+    assert_non_null(strstr(pls_last_message(), "have a body"));
+    copy.header.rows[PLS_TABLE_NUMBERS] = numbers, copy.header.rows[PLS_TABLE_BODIES] = bodies;
+    MUST(snapshot_put(b.scene.world, &copy));
+    *(uint8_t *)copy.data[PLS_TABLE_BONDS][0] = 1;
+    assert_int_equal(snapshot_put(b.scene.world, &copy), PLS_CORRUPT);
+    assert_non_null(strstr(pls_last_message(), "at one end only"));
+    snapshot_free(&copy);
+    lattice_free(&b);
+}
+
+static pls_vec3 folded(pls_vec3 X, const void *context)
+{
+    const double spacing = *(const double *)context;
+    return pls_vec(X.x < 0.5 * spacing ? X.x + spacing : X.x, X.y, X.z);
+}
+
+/// Nothing but touch acts between points whose bond is broken, wherever they are.
+static void points_of_a_broken_bond_may_coincide(void **state)
+{
+    (void)state;
+    for (int solid = 0; solid < 2; ++solid)
+    {
+        lattice_plan plan = lattice_default(3, 3);
+        plan.horizon = 1.5 * plan.spacing;
+        if (solid == 0) plan.law = "bond_based", plan.shear = 0.6 * plan.bulk;
+        lattice b = lattice_make(&plan);
+        size_t cut;
+        MUST(pls_world_cut_bonds(b.scene.world, b.bonds, pls_vec(0.05, -9, -9), pls_vec(0.05, 30, -9), pls_vec(0.05, -9, 30), &cut));
+        lattice_deform(&b, folded, &b.plan.spacing);
+        for (size_t p = 0; p < b.points; ++p) assert_true(pls_length(lattice_force(&b, p)) < 1e-9);
+        lattice_free(&b);
+    }
+}
+
 static void a_cut_takes_the_bonds_that_cross_it(void **state)
 {
     (void)state;
@@ -267,6 +310,8 @@ int main(void)
         cmocka_unit_test(energy_of_broken_bonds_is_booked_to_second_order),
         cmocka_unit_test(bits_are_equal_for_threads_and_restarts_while_bonds_break),
         cmocka_unit_test(a_state_does_not_mend_bonds),
+        cmocka_unit_test(corrupt_states_are_refused),
+        cmocka_unit_test(points_of_a_broken_bond_may_coincide),
         cmocka_unit_test(a_cut_takes_the_bonds_that_cross_it),
         cmocka_unit_test(a_body_that_leaves_takes_its_bonds_along),
     };

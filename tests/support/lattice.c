@@ -48,6 +48,19 @@ static void join(lattice *b)
     MUST(pls_world_add_bonds(b->scene.world, &def, &b->bonds));
 }
 
+static pls_material_id add_solid(lattice *b, const char *name, double stiffness)
+{
+    const double K = b->plan.bulk, mu = b->plan.shear;
+    pls_material_id id;
+    pls_material_def material = pls_default_material_def();
+    snprintf(material.name, sizeof material.name, "%s", name);
+    material.values = (pls_material_values){.density = b->plan.density,
+                                            .young_modulus = stiffness * 9.0 * K * mu / (3.0 * K + mu),
+                                            .poisson_ratio = (3.0 * K - 2.0 * mu) / (2.0 * (3.0 * K + mu))};
+    MUST(pls_world_add_material(b->scene.world, &material, &id));
+    return id;
+}
+
 lattice lattice_make(const lattice_plan *plan)
 {
     lattice b = {.plan = *plan, .points = plan->count[0] * plan->count[1] * plan->count[2]};
@@ -60,13 +73,9 @@ lattice lattice_make(const lattice_plan *plan)
     for (int a = 0; a < plan->dimension; ++a) def.periodic[a] = plan->periodic;
     b.scene.dimension = plan->dimension;
     MUST(pls_world_create(&def, &b.scene.world));
-    const double K = plan->bulk, mu = plan->shear, radius = 0.5 * plan->spacing;
-    pls_material_def material = pls_default_material_def();
-    snprintf(material.name, sizeof material.name, "solid");
-    material.values = (pls_material_values){.density = plan->density,
-                                            .young_modulus = 9.0 * K * mu / (3.0 * K + mu),
-                                            .poisson_ratio = (3.0 * K - 2.0 * mu) / (2.0 * (3.0 * K + mu))};
-    MUST(pls_world_add_material(b.scene.world, &material, &b.scene.grain));
+    const double radius = 0.5 * plan->spacing;
+    b.scene.grain = add_solid(&b, "solid", 1.0);
+    const pls_material_id second = plan->stiffer > 0.0 ? add_solid(&b, "stiffer", plan->stiffer) : b.scene.grain;
     const verify_value values[] = {{"kn", plan->contact_stiffness}, {NULL, 0.0}};
     verify_set_law(b.scene.world, b.scene.grain, b.scene.grain, "elastic", values);
     MUST(pls_world_add_shape(b.scene.world, "point", verify_shape(plan->dimension == 2 ? "disc" : "sphere"), &radius, 1, &b.scene.ball));
@@ -77,7 +86,8 @@ lattice lattice_make(const lattice_plan *plan)
         const size_t i = p % plan->count[0], j = p / plan->count[0] % plan->count[1], k = p / plan->count[0] / plan->count[1];
         b.reference[p] = pls_vec(plan->spacing * (double)i, plan->spacing * (double)j, plan->spacing * (double)k);
         pls_body_def body = verify_body_def(&b.scene, b.scene.ball, b.reference[p]);
-        body.mass = plan->density * lattice_volume(&b);
+        body.mass = plan->density * lattice_volume(&b) * (i == 0 && plan->lighter > 0.0 ? plan->lighter : 1.0);
+        if (2 * i >= plan->count[0]) body.material = second;
         MUST(pls_world_add_body(b.scene.world, &body, &b.body[p]));
     }
     join(&b);

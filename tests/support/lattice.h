@@ -22,6 +22,8 @@ typedef struct lattice_plan
     bool periodic;            ///< along all axes
     double contact_stiffness; ///< kn of points that touch [N/m]
     double dt;                ///< [s]
+    double stiffer;           ///< of the half with the larger x: its moduli by those of the other. 0: all alike
+    double lighter;           ///< of the first layer along x: its points' masses by those of others. 0: all alike
 } lattice_plan;
 
 typedef struct lattice
