@@ -47,6 +47,7 @@ typedef struct pls_shape_part
 
 /// A tree of boxes about the parts of a shape, by which those near a point are found.
 typedef struct pls_part_tree pls_part_tree;
+typedef struct pls_distance_field pls_distance_field;
 typedef struct pls_surface_sample pls_surface_sample;
 
 /// A density that varies in space, relative to the material's.
@@ -141,6 +142,7 @@ struct pls_shape
     bool uneven;                      ///< its density varies in space: `mass` is by that density
     const pls_density_field *density; ///< while it is made: that of its input
     pls_surface_sample *sample;       ///< pieces of its surface, where contact goes by them; else null
+    pls_distance_field *field;        ///< its distance on a lattice, where contact goes by that; else null
 };
 
 /// Make a shape: checks the numbers, prepares, measures what the operations do not give, and tries whether `sdf` is what it should be.

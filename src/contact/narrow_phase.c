@@ -11,7 +11,7 @@
 //   smooth on smooth     Newton on the sphere of normals (smooth_depth.c); when it stalls, BFGS; then the expanding polytope
 //   SDFs alone           BFGS on one point between the surfaces; its last digits, and what it cannot do, on the shapes pushed apart (sdf_depth.c); then the expanding polytope
 //                        on support points that follow from the SDF. Warm on the shapes pushed apart at once
-//   not convex           pieces of the surfaces (sampled_touch.c), and so are flat places that only an SDF knows of, and two cylinders. For PLS_FACES_POINT BFGS from the deepest of a grid of points
+//   not convex           pieces of the surfaces (sampled_touch.c), and so are flat places that only an SDF knows of or that are those of a superquadric, and two cylinders. For PLS_FACES_POINT BFGS from the deepest of a grid of points
 //                        in the overlap of the bounding boxes: a place where the two surfaces face each other, so `delta` is right for that place; that no other place is
 //                        deeper is only as certain as the grid is fine
 //

@@ -19,6 +19,11 @@
 // Balls whose centres come below the surface fade before they do, if they are small: near edges, where there are larger ones beside. The largest ones hold for good, others by the square of their
 // part of these, so that something pushes back at any depth.
 //
+// Superquadrics with flat ends or sides, whose distance takes microseconds, are asked by a field of it (distance_field.h): its gradient is that of its values, so all of this holds.
+//
+// Walls of triangles or segments have no inside, and a body that is not convex may be on both sides of one at once: a ring on the rim of a sheet. There the pieces are those of the wall, cut in
+// a way that does not depend on where the body is, and d is their depth in the body, d = -phi (of walls thickened by r, r - phi): no side to be known, nor any edge or rim to go round.
+//
 // Any number of places where two bodies touch make one contact: a force on a line and a couple. Friction and dashpots take them for one area, whose moments are those of all.
 
 #include "contact/sampled_touch.h"
@@ -26,12 +31,15 @@
 #include "contact/facet.h"
 #include "contact/overlap_laws.h"
 #include "shape/builtin.h"
+#include "shape/distance_field.h"
 #include "shape/surface_sample.h"
 
 #include <string.h>
 
 static const double point_like = 1e-10; ///< of the size squared: moments of no area
 static const double flat_places = 0.05; ///< share of the surface that makes a shape one with flat places
+static const double box_like = 0.5;     ///< lesser exponent of a superquadric below which it has flat places
+static const double sheet_cell = 2.0;   ///< longest edge of pieces of walls, of the spacing of the body's own: about as large
 
 // ---- which pairs ----------------------------------------------------------------------------------------------------------------------------------------
 
@@ -39,16 +47,21 @@ static bool is_concave(const pls_shape *s) { return !s->convex && s->sample; }
 static bool is_ball(const pls_shape *s) { return s->polytope && s->polytope->vertex_count == 1; }
 static bool is_flat_by_values(const pls_shape *s) { return s->convex && !s->ops->support && s->sample && s->sample->flat > flat_places; }
 
+/// Of superquadrics those with flat ends or sides.
+static bool is_box_like(const pls_shape *s) { return s->ops == &pls_superquadric_shape && pls_superquadric_exponent(s) < box_like; }
+
 static bool is_cylinder(const pls_shape *s) { return s->ops == &pls_cylinder_shape; }
 
-static bool has_flat_places(const pls_shape *s) { return s->ops->unbounded || s->polytope || is_cylinder(s) || is_flat_by_values(s); }
+static bool goes_by_pieces(const pls_shape *s) { return is_flat_by_values(s) || is_box_like(s); }
+
+static bool has_flat_places(const pls_shape *s) { return s->ops->unbounded || s->polytope || is_cylinder(s) || goes_by_pieces(s); }
 
 bool pls_is_sampled_pair(const pls_shape *a, const pls_shape *b)
 {
     if (is_ball(a) || is_ball(b)) return false;
     if (is_concave(a) || is_concave(b)) return true;
     if (is_cylinder(a) && is_cylinder(b)) return true; // ends on ends, sides on sides: no closed forms, but a quick SDF
-    return (is_flat_by_values(a) || is_flat_by_values(b)) && has_flat_places(a) && has_flat_places(b);
+    return (goes_by_pieces(a) || goes_by_pieces(b)) && has_flat_places(a) && has_flat_places(b);
 }
 
 // ---- sums -----------------------------------------------------------------------------------------------------------------------------------------------
@@ -108,7 +121,11 @@ static inline double least_depth(const pls_prism *p, int first, int last, pls_ve
 static inline double distance_to(const holder *h, pls_vec3 X)
 {
     int which;
-    if (h->prism.planes == 0) return pls_shape_sdf(h->body->shape, X) * h->body->scale;
+    if (h->prism.planes == 0)
+    {
+        const pls_shape *s = h->body->shape;
+        return (s->field ? pls_distance_field_at(s->field, X, NULL) : pls_shape_sdf(s, X)) * h->body->scale;
+    }
     return -least_depth(&h->prism, 0, h->prism.planes, X, &which);
 }
 
@@ -124,7 +141,16 @@ static inline double depth_in(const holder *h, pls_vec3 X)
 static pls_vec3 gradient_in(const holder *h, pls_vec3 X)
 {
     int which = 0;
-    if (h->prism.planes == 0) return pls_posed_turn(h->body, pls_shape_gradient(h->body->shape, X));
+    if (h->prism.planes == 0)
+    {
+        const pls_shape *s = h->body->shape;
+        pls_vec3 g;
+        if (s->field)
+            pls_distance_field_at(s->field, X, &g);
+        else
+            g = pls_shape_gradient(s, X);
+        return pls_posed_turn(h->body, g);
+    }
     least_depth(&h->prism, 0, h->prism.faces, X, &which);
     return h->prism.plane[which].normal;
 }
@@ -193,22 +219,30 @@ static void add_pieces(sums *s, const pls_posed *own, const holder *h, pls_vec3 
     const pls_surface_sample *sample = own->shape->sample;
     const double to_length = own->scale, to_area = share * (own->shape->dimension == 2 ? own->scale : own->scale * own->scale);
     const bool front = h->prism.planes > 0 || h->body->shape->ops->unbounded;
+    const pls_distance_field *field = front ? NULL : h->body->shape->field;
+    const double slope = field ? PLS_FIELD_SLOPE : 1.0, most = field ? pls_distance_field_reach(field) * h->body->scale : INFINITY;
+    const double largest = fmin(sample->largest_inner * to_length, most);
     const frame inside = to_holder(h, own, origin), world = about_origin(own, origin);
     for (uint32_t b = 0; b < sample->balls;)
     {
         const pls_surface_ball *ball = &sample->ball[b];
-        const double gap = distance_to(h, placed(&inside, ball->centre)) - ball->radius * to_length;
+        const double gap = distance_to(h, placed(&inside, ball->centre)) - slope * ball->radius * to_length;
         if (gap > 0.0 && gap < s->nearest) s->nearest = gap;
         b = gap > 0.0 ? ball->next : b + 1;
         if (gap > 0.0 || !ball->leaf) continue;
         for (uint32_t k = ball->first; k < ball->last; ++k)
         {
             const pls_surface_piece *p = &sample->piece[k];
-            const pls_vec3 own_at = front ? p->x : p->inner, X = placed(&inside, own_at);
-            const double radius = front ? 0.0 : p->inner_radius * to_length, d = depth_in(h, X) + radius;
+            const double whole = p->inner_radius * to_length, radius = front ? 0.0 : fmin(whole, most);
+            // Where fields end balls are smaller.
+            const pls_vec3 own_at = front             ? p->x
+                                    : radius == whole ? p->inner
+                                                      : pls_add(p->x, pls_scale(pls_sub(p->inner, p->x), radius / whole));
+            const pls_vec3 X = placed(&inside, own_at);
+            const double d = depth_in(h, X) + radius;
             if (d > 0.0 && (front || radius > 0.0))
             {
-                const double part = p->inner_radius / sample->largest_inner;
+                const double part = radius / largest;
                 const touching_piece f = {.x = placed(&world, p->x),
                                           .n = pls_posed_turn(own, p->n),
                                           .at = placed(&world, own_at),
@@ -262,6 +296,95 @@ void pls_sampled_touch(const pls_posed *a, const pls_posed *b, const pls_narrow_
     else
         pls_overlap_none(&none, out);
     out->depth = out->reach = s.deepest > 0.0 ? s.deepest : none.delta;
+}
+
+// ---- walls --------------------------------------------------------------------------------------------------------------------------------------------------
+
+bool pls_is_sheet_pair(const pls_shape *a, const pls_shape *facet) { return is_concave(a) && pls_is_facet(facet); }
+
+/// A facet in its own frame, the body it may lie in, and what it adds up to. Cells are halved in the frame of the facet, so that they are the same however the body lies.
+typedef struct sheet
+{
+    sums s;
+    const pls_posed *body, *facet;
+    frame inside;            ///< from the facet's frame to the body's
+    pls_vec3 origin, normal; ///< in the world
+    double cell;             ///< longest edge of cells, in the facet's lengths
+    double to_body;          ///< the body's lengths by the facet's
+    double margin;           ///< of the wall, in the body's lengths
+    bool flat;
+} sheet;
+
+/// The middle of a triangle or segment that is small enough counts for all of it. `X`: that in the body's frame; `d`: its depth there.
+static void add_cell(sheet *h, pls_vec3 X, double size, double d)
+{
+    const pls_posed *own = h->body;
+    const double length = h->facet->scale, depth = d * own->scale;
+    const pls_vec3 x = pls_sub(pls_posed_world(own, X), h->origin), up = pls_posed_turn(own, pls_shape_gradient(own->shape, X));
+    const touching_piece f = {.x = x,
+                              .n = pls_scale(h->normal, pls_dot(h->normal, up) > 0.0 ? -1.0 : 1.0),
+                              .at = x,
+                              .up = up,
+                              .area = size * (h->flat ? length : length * length),
+                              .d = depth,
+                              .w = plain_weights(depth)};
+    add_piece(&h->s, &f, -1.0);
+}
+
+/// Halves triangles and segments at their longest edge until they are small, but for those that lie outside.
+static void cut_facet(sheet *h, const pls_vec3 *v, int corners)
+{
+    const pls_shape *shape = h->body->shape;
+    pls_vec3 middle = pls_vec(0.0, 0.0, 0.0);
+    double radius = 0.0, longest = -1.0;
+    int edge = 0;
+    for (int k = 0; k < corners; ++k) middle = pls_add(middle, pls_scale(v[k], 1.0 / corners));
+    for (int k = 0; k < corners; ++k)
+    {
+        const double length = pls_length(pls_sub(v[(k + 1) % corners], v[k]));
+        radius = fmax(radius, pls_length(pls_sub(v[k], middle)));
+        if (length > longest) longest = length, edge = k;
+    }
+    const pls_vec3 X = placed(&h->inside, middle);
+    const double own_radius = radius * h->to_body;
+    if (pls_length(pls_sub(X, shape->mass.centre)) > shape->radius + own_radius + h->margin) return;
+    const double d = h->margin - pls_shape_sdf(shape, X);
+    if (d < -own_radius) return;
+    if (longest <= h->cell)
+    {
+        const double size = corners == 2 ? longest : 0.5 * pls_length(pls_cross(pls_sub(v[1], v[0]), pls_sub(v[2], v[0])));
+        if (d > 0.0) add_cell(h, X, size, d);
+        return;
+    }
+    const int end = (edge + 1) % corners;
+    const pls_vec3 half = pls_scale(pls_add(v[edge], v[end]), 0.5);
+    for (int side = 0; side < 2; ++side)
+    {
+        pls_vec3 part[3];
+        for (int k = 0; k < corners; ++k) part[k] = v[k];
+        part[side == 0 ? end : edge] = half;
+        cut_facet(h, part, corners);
+    }
+}
+
+double pls_sheet_in(const pls_posed *a, const pls_posed *facet, pls_vec3 origin, pls_overlap_integrals *P)
+{
+    const int corners = facet->shape->dimension;
+    const double to_body = facet->scale / a->scale;
+    const holder body = {.body = a};
+    sheet h = {.s = {.P = {.scattered = true}, .nearest = INFINITY},
+               .body = a,
+               .facet = facet,
+               .inside = to_holder(&body, facet, origin),
+               .origin = origin,
+               .normal = pls_posed_turn(facet, pls_shape_facet(facet->shape)->normal),
+               .cell = sheet_cell * a->shape->sample->spacing / to_body,
+               .to_body = to_body,
+               .margin = facet->shape->margin * to_body,
+               .flat = corners == 2};
+    cut_facet(&h, facet->shape->polytope->vertex, corners);
+    *P = h.s.P;
+    return h.s.deepest;
 }
 
 double pls_sampled_behind(const pls_posed *a, const pls_posed *facet, const pls_prism *prism, pls_vec3 origin, pls_overlap_integrals *P)

@@ -31,7 +31,8 @@ typedef struct table
 typedef struct facets
 {
     size_t count;
-    bool by_pieces; ///< of the body's surface: nothing is known of its depths
+    bool by_pieces; ///< of the body's surface, or of facets: nothing is known of depths
+    bool sides;     ///< the body is on one side of a facet
     uint32_t candidate[MOST];
     uint16_t group[MOST]; ///< place of another one of the same group, of the first one its own
     double front[MOST];   ///< the side on which the body is; 0: it has nothing to do with it
@@ -116,6 +117,7 @@ static void look(const pls_solid_list *list, const pls_contact_input *in, facets
     const pls_facet seams = seams_of(list, in, f, k, p.b);
     f->seen[k] = pls_facet_seen_from(p.b, &seams, pls_posed_world(p.a, p.a->shape->mass.centre));
     f->by_pieces = pls_wall_needs_no_depth(p.a, p.b);
+    f->sides = pls_wall_has_sides(p.a, p.b);
     f->by_push[k] = list->touch[f->candidate[k]].delta > 0.0 && f->seen[k].at_rim && !f->by_pieces;
     f->push[k] = f->by_pieces ? 0.0 : -pls_dot(list->touch[f->candidate[k]].normal, pls_posed_turn(p.b, seams.normal));
 }
@@ -147,6 +149,11 @@ static double front_by(const pls_solid_list *list, const facets *f, size_t k)
 
 static void find_fronts(const pls_solid_list *list, facets *f)
 {
+    if (!f->sides)
+    {
+        for (size_t k = 0; k < f->count; ++k) f->front[k] = 1.0;
+        return;
+    }
     for (uint16_t k = 0; k < f->count; ++k)
     {
         size_t slot;
@@ -174,7 +181,7 @@ static void find_facets(const pls_solid_list *list, const pls_contact_input *in,
 {
     double gap = 0.0;
     size_t all = 0;
-    f->count = 0;
+    f->count = 0, f->sides = true;
     for (size_t c = first; c < last; ++c)
         if (list->pair[c].on_wall) gap = fmax(gap, nearness * list->touch[c].delta);
     for (size_t c = first; c < last; ++c) all += matters(list, c, gap);
@@ -244,7 +251,7 @@ static void join_images(const pls_solid_list *list, const pls_contact_input *in,
         pls_solid_parts_of(list, in, f->candidate[k], &p), pls_solid_parts_of(list, in, f->candidate[j], &q);
         pls_facet facet = *facet_of(list, f->candidate[k]);
         const int side = pls_facet_join_posed(p.b, &facet, q.b);
-        if (side >= 0 && (facet.level[side] || facet.bend[side] * f->front[k] > 0.0)) join(f, k, j);
+        if (side >= 0 && (facet.level[side] || (f->sides && facet.bend[side] * f->front[k] > 0.0))) join(f, k, j);
     }
 }
 
@@ -253,7 +260,7 @@ static void find_groups(const pls_solid_list *list, const pls_contact_input *in,
     for (uint16_t k = 0; k < f->count; ++k)
     {
         join_patch(list, f, k);
-        join_ridges(list, f, k);
+        if (f->sides) join_ridges(list, f, k);
         if (in->domain->any_periodic) join_images(list, in, f, k);
     }
 }

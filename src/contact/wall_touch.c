@@ -15,10 +15,11 @@
 #include "contact/overlap_laws.h"
 #include "contact/sampled_touch.h"
 
-enum kind { NONE, FACES, CYLINDER, LINE, PIECES };
+enum kind { NONE, FACES, CYLINDER, LINE, PIECES, SHEET };
 
 static enum kind kind_of(const pls_posed *a, const pls_posed *facet)
 {
+    if (pls_is_sheet_pair(a->shape, facet->shape)) return SHEET;
     if (pls_is_sampled_pair(a->shape, facet->shape)) return PIECES;
     if (pls_has_faces(a->shape)) return FACES;
     if (pls_is_thick_cylinder(a)) return CYLINDER;
@@ -31,6 +32,8 @@ bool pls_is_wall_pair(const pls_posed *a, const pls_posed *facet, const pls_narr
 }
 
 bool pls_wall_needs_no_depth(const pls_posed *a, const pls_posed *facet) { return pls_is_sampled_pair(a->shape, facet->shape); }
+
+bool pls_wall_has_sides(const pls_posed *a, const pls_posed *facet) { return !pls_is_sheet_pair(a->shape, facet->shape); }
 
 bool pls_wall_has_point(const pls_posed *a) { return pls_has_line(a->shape); }
 
@@ -75,11 +78,11 @@ bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *se
     const enum kind kind = kind_of(a, facet);
     pls_vec3 origin = depth->point;
     if (kind == CYLINDER) origin = pls_add(origin, pls_scale(depth->normal, 0.5 * depth->delta)); // on A
-    if (kind == PIECES) origin = pls_posed_world(a, a->shape->mass.centre);
+    if (kind == PIECES || kind == SHEET) origin = pls_posed_world(a, a->shape->mass.centre);
     const pls_vec3 start = origin;
     const double margin = kind == PIECES ? 0.0 : a->shape->margin * a->scale;
     pls_prism prism = {.planes = 0}; // lines go by the distance from the facet itself
-    if (kind != LINE) prism = pls_facet_prism(facet, seams, origin, front, margin);
+    if (kind != LINE && kind != SHEET) prism = pls_facet_prism(facet, seams, origin, front, margin);
     pls_overlap_integrals P;
     double deep = depth->delta;
     bool any = false;
@@ -89,6 +92,7 @@ bool pls_wall_add(pls_wall_sum *sum, const pls_posed *facet, const pls_facet *se
         case CYLINDER: any = pls_cylinder_behind(a, &prism, &origin, &P); break;
         case LINE: any = pls_line_on(a, facet, origin, &P); break;
         case PIECES: any = (deep = pls_sampled_behind(a, facet, &prism, origin, &P)) > 0.0; break;
+        case SHEET: any = (deep = pls_sheet_in(a, facet, origin, &P)) > 0.0; break;
         case NONE: break;
     }
     if (!any) return false;
@@ -127,7 +131,7 @@ bool pls_wall_touch(pls_wall_sum *sum, const pls_narrow_options *options, pls_to
     }
     else if (sum->kind == FACES) // on the surface, not on that of the core
         deeper = a->shape->margin * a->scale;
-    else if (sum->kind == PIECES)
+    else if (sum->kind == PIECES || sum->kind == SHEET)
         pls_sampled_area(a->size, &t);
     t.point = pls_add(t.point, pls_scale(t.normal, deeper)), t.middle = pls_add(t.middle, pls_scale(t.normal, deeper));
     t.point = pls_add(t.point, sum->origin), t.middle = pls_add(t.middle, sum->origin);

@@ -8,8 +8,11 @@
 /// Does a shape touch this facet by more than a point? Always the same answer for the same two: polytopes, cylinders, capsules and what is known by pieces of its surface do.
 bool pls_is_wall_pair(const pls_posed *a, const pls_posed *facet, const pls_narrow_options *options);
 
-/// Of such a pair no penetration depth is asked for: it goes by pieces of the body's surface.
+/// Of such a pair no penetration depth is asked for: it goes by pieces of the body's surface, or of the facet.
 bool pls_wall_needs_no_depth(const pls_posed *a, const pls_posed *facet);
+
+/// Of such a pair does it matter on which side of the wall the body is? Not to bodies that are not convex.
+bool pls_wall_has_sides(const pls_posed *a, const pls_posed *facet);
 
 /// May the deepest point stand for what such a body's integrals do not tell? That of a capsule whose axis passes through the wall.
 bool pls_wall_has_point(const pls_posed *a);

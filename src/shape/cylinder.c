@@ -62,14 +62,14 @@ static pls_vec3 support(const pls_shape *shape, pls_vec3 n)
 
 static double sdf(const pls_shape *shape, pls_vec3 X)
 {
-    double p = hypot(X.x, X.y) - core_radius(shape), q = fabs(X.z) - core_half(shape);
-    return (p > 0.0 && q > 0.0 ? hypot(p, q) : fmax(p, q)) - rounding_of(shape);
+    double p = sqrt(X.x * X.x + X.y * X.y) - core_radius(shape), q = fabs(X.z) - core_half(shape);
+    return (p > 0.0 && q > 0.0 ? sqrt(p * p + q * q) : fmax(p, q)) - rounding_of(shape);
 }
 
 static pls_vec3 gradient(const pls_shape *shape, pls_vec3 X)
 {
-    double p = hypot(X.x, X.y) - core_radius(shape), q = fabs(X.z) - core_half(shape), radial = p > q, axial = !(p > q);
-    if (p > 0.0 && q > 0.0) radial = p / hypot(p, q), axial = q / hypot(p, q);
+    double p = sqrt(X.x * X.x + X.y * X.y) - core_radius(shape), q = fabs(X.z) - core_half(shape), radial = p > q, axial = !(p > q);
+    if (p > 0.0 && q > 0.0) radial = p / sqrt(p * p + q * q), axial = q / sqrt(p * p + q * q);
     pls_vec3 side = pls_scale(away(X), radial);
     return pls_vec(side.x, side.y, copysign(axial, X.z));
 }

@@ -11,6 +11,7 @@
 #include "shape/mass_quadrature.h"
 #include "shape/part_tree.h"
 #include "shape/sdf_trial.h"
+#include "shape/distance_field.h"
 #include "shape/surface_sample.h"
 #include "shape/wall_facets.h"
 
@@ -435,6 +436,7 @@ void pls_shape_free(pls_shape *shape)
     if (!shape || --shape->users > 0) return;
     release_parts(shape);
     pls_surface_sample_free(shape->sample);
+    pls_distance_field_free(shape->field);
     if (shape->ops->release && shape->data) shape->ops->release(shape->data);
     pls_release(&shape);
 }

@@ -48,6 +48,11 @@ static const pls_parameter parameters[] = {
 
 enum { NORTH_SOUTH = 3, EAST_WEST = 4, ROUNDING = 5, MOST_STEPS = 100 };
 
+double pls_superquadric_exponent(const pls_shape *s)
+{
+    return s->dimension == 2 ? s->values[EAST_WEST] : fmin(s->values[NORTH_SOUTH], s->values[EAST_WEST]);
+}
+
 static double dual_exponent(double epsilon) { return 2.0 / (2.0 - epsilon); }
 
 // ---- the support function in logarithms ---------------------------------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #include "base/alloc.h"
 #include "base/random.h"
 #include "shape/builtin.h"
+#include "shape/distance_field.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -17,7 +18,7 @@
 
 enum {
     PIECES = 12000,
-    PIECES_OF_CYLINDER = 3000, ///< as cans come by the thousand
+    PIECES_OF_QUICK = 3000, ///< of cylinders and superquadrics, as these come by the thousand
     PIECES_2D = 1500,
     FIRST_SIDE = 24, ///< cells along the longest edge of the bounds when nothing is known
     MOST_SIDE = 160,
@@ -49,6 +50,7 @@ typedef struct pieces
 {
     pls_surface_piece *entry;
     size_t count, capacity;
+    double spacing; ///< of the lattice
 } pieces;
 
 static pls_vec3 corner_of(const lattice *g, int i, int j, int k)
@@ -184,7 +186,7 @@ static pls_status cut_cells(const lattice *g, pieces *out)
 {
     const size_t layer = (size_t)(g->side[0] + 1) * (size_t)(g->side[1] + 1);
     double *phi = NULL;
-    out->count = 0;
+    out->count = 0, out->spacing = g->spacing;
     PLS_TRY(pls_allocate(&phi, 2 * layer, sizeof *phi, "pieces of a surface"));
     pls_status status = PLS_OK;
     fill_layer(g, 0, phi);
@@ -365,7 +367,7 @@ static pls_status make(const pls_shape *shape, size_t count, pls_surface_sample 
 {
     pieces found = {0};
     pls_status status = find_pieces(shape, count, &found);
-    s->piece = found.entry, s->count = found.count;
+    s->piece = found.entry, s->count = found.count, s->spacing = found.spacing;
     PLS_TRY(status);
     PLS_TRY(pls_allocate(&s->ball, 2 * s->count, sizeof *s->ball, "pieces of a surface"));
     find_inner(shape, s);
@@ -389,15 +391,24 @@ pls_status pls_surface_sample_make(const pls_shape *shape, size_t count, pls_sur
 
 static size_t count_for(const pls_shape *shape)
 {
-    return shape->dimension == 2 ? PIECES_2D : shape->ops == &pls_cylinder_shape ? PIECES_OF_CYLINDER : PIECES;
+    const bool quick = shape->ops == &pls_cylinder_shape || shape->ops == &pls_superquadric_shape;
+    return shape->dimension == 2 ? PIECES_2D : quick ? PIECES_OF_QUICK : PIECES;
 }
 
 pls_status pls_shape_need_sample(const pls_shape *shape)
 {
     if (shape->sample || shape->ops->unbounded || shape->part_count > 0 || !(shape->mass.volume > 0.0)) return PLS_OK;
     pls_surface_sample *made;
+    pls_distance_field *field = NULL;
     PLS_TRY(pls_surface_sample_make(shape, count_for(shape), &made));
+    const pls_status status = shape->ops == &pls_superquadric_shape ? pls_distance_field_make(shape, &field) : PLS_OK;
+    if (status != PLS_OK)
+    {
+        pls_surface_sample_free(made);
+        return status;
+    }
     memcpy((char *)(uintptr_t)shape + offsetof(pls_shape, sample), &made, sizeof made); // kept with the shape, though it does not change it
+    memcpy((char *)(uintptr_t)shape + offsetof(pls_shape, field), &field, sizeof field);
     return PLS_OK;
 }
 

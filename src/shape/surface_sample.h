@@ -30,6 +30,7 @@ struct pls_surface_sample
     pls_surface_piece *piece;
     pls_surface_ball *ball;
     size_t count, balls;
+    double spacing;       ///< of the lattice [m]
     double largest_inner; ///< radius [m]
     double flat;          ///< share of the area that bends less, in one direction at least, than a ball ten times as large as the shape
 };

@@ -45,6 +45,8 @@ static double corner(const pls_shape *s, pls_vec3 X)
     return fmin(left, below);
 }
 
+static double bracket(const pls_shape *s, pls_vec3 X) { return beyond(corner(s, X), fabs(X.z) - s->values[1], -INFINITY); }
+
 /// Least distance from the balls, whose radii shrink along the axis.
 static double cone(const pls_shape *shape, pls_vec3 X)
 {
@@ -62,6 +64,7 @@ static const pls_parameter drum_numbers[] = {NUMBER("radius"), NUMBER("half_leng
 static const pls_parameter cone_numbers[] = {NUMBER("low"), NUMBER("high"), NUMBER("length"), {.name = NULL}};
 static const pls_parameter radius[] = {NUMBER("radius"), {.name = NULL}};
 static const pls_parameter edge[] = {NUMBER("a"), {.name = NULL}};
+static const pls_parameter bracket_numbers[] = {NUMBER("a"), NUMBER("half_width"), {.name = NULL}};
 
 const pls_shape_ops values_ring = {
     .api_version = PLS_API_VERSION, .name = "values_ring", .parameters = ring_numbers, .in_3d = true, .sdf = ring};
@@ -78,6 +81,8 @@ const pls_shape_ops values_ball = {
     .api_version = PLS_API_VERSION, .name = "values_ball", .parameters = radius, .in_2d = true, .in_3d = true, .convex = true, .sdf = ball};
 const pls_shape_ops values_corner = {
     .api_version = PLS_API_VERSION, .name = "values_corner", .parameters = edge, .in_2d = true, .sdf = corner};
+const pls_shape_ops values_bracket = {
+    .api_version = PLS_API_VERSION, .name = "values_bracket", .parameters = bracket_numbers, .in_3d = true, .sdf = bracket};
 const pls_shape_ops values_cone = {.api_version = PLS_API_VERSION,
                                    .name = "sdf-only cone",
                                    .parameters = cone_numbers,

@@ -16,5 +16,7 @@ extern const pls_shape_ops values_ball;
 extern const pls_shape_ops values_cone;
 /// 2D: three quarters of a square about the origin, of edge 2 a, the first quadrant missing. Numbers: a.
 extern const pls_shape_ops values_corner;
+/// The same in 3D, of some width along z. Numbers: a, half width.
+extern const pls_shape_ops values_bracket;
 
 #endif

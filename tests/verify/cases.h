@@ -7,7 +7,7 @@
 
 #include "support/verify.h"
 
-enum { VERIFY_MAX_ROWS = 96, VERIFY_MAX_POINTS = 4096 };
+enum { VERIFY_MAX_ROWS = 160, VERIFY_MAX_POINTS = 4096 };
 
 typedef enum verify_kind {
     VERIFY_RELATIVE, ///< |measured - reference| <= tolerance |reference|

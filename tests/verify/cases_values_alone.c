@@ -1,4 +1,4 @@
-// cases_values_alone.c -- bodies of which only the signed distance is known: rings that fall on each other, boxes that stand on each other.
+// cases_values_alone.c -- bodies of which only the signed distance is known: rings that fall on each other, boxes that stand on each other, rings and brackets on rims of walls.
 //
 // Contact goes by pieces of their surfaces. However coarse these are, no energy may be won.
 #include "support/numbers.h"
@@ -99,8 +99,55 @@ static void boxes(verify_sheet *sheet)
     verify_close(&scene);
 }
 
+/// Rings and brackets fall on the rim of a sheet that stands on a floor, both of triangles: some have parts of them on both sides of it.
+static verify_scene drop_on_fin(double dt, const verify_value *values)
+{
+    enum { GRAINS = 4 };
+    pls_world_def def = pls_default_world_def(3);
+    def.dt = dt;
+    def.coordination = 4;
+    verify_scene scene = verify_open(&def, "viscoelastic", values);
+    MUST(pls_world_add_gravity(scene.world, pls_vec(0, 0, -gravity)));
+    pls_body_def wall = verify_body_def(&scene, verify_add_mesh(&scene, PLS_TEST_DATA "/fin.obj"), pls_vec(0, 0, 0));
+    wall.motion.axes = PLS_AXIS_ALL;
+    verify_add(&scene, &wall);
+    const pls_shape_id shape[2] = {add_values(&scene, &values_ring, NUMBERS(0.25, 0.08)),
+                                   add_values(&scene, &values_bracket, NUMBERS(0.25, 0.15))};
+    const double side[GRAINS] = {0.05, 0.12, -0.1, 0.02}, along[GRAINS] = {-0.9, -0.2, 0.45, 1.1}, lean[GRAINS] = {1.3, 0.9, 0.4, 2.2};
+    for (int k = 0; k < GRAINS; ++k)
+    {
+        pls_body_def body = verify_body_def(&scene, shape[k % 2], pls_vec(side[k], along[k], 1.95));
+        body.orientation = (pls_quat){cos(0.5 * lean[k]), 0.8 * sin(0.5 * lean[k]), 0.6 * sin(0.5 * lean[k]), 0.0};
+        verify_add(&scene, &body);
+    }
+    MUST(pls_world_prepare(scene.world));
+    return scene;
+}
+
+static void fin(verify_sheet *sheet)
+{
+    const int scale = sheet->thorough ? 4 : 1;
+    const double dt = 2e-4 / scale;
+    verify_scene scene = drop_on_fin(dt, damped);
+    sheet_below(sheet, largest_book_error(&scene, sheet->thorough ? 120 : 20, 200 * scale), 1e-3,
+                "rings and brackets fall on the rim of a sheet and come to rest: error of the energy book at dt = %g s", dt);
+    if (sheet->thorough)
+    {
+        MUST(pls_world_run(scene.world, 200000));
+        sheet_below(sheet, verify_figures(scene.world).energy_kinetic / verify_total_energy(scene.world), 1e-8,
+                    "rings and brackets on a sheet: kinetic energy in the end, of all");
+    }
+    verify_close(&scene);
+
+    scene = drop_on_fin(dt, elastic);
+    sheet_below(sheet, largest_book_error(&scene, sheet->thorough ? 50 : 20, 100 * scale), 1e-2,
+                "rings and brackets on a sheet, no damping: relative error of the energy at dt = %g s", dt);
+    verify_close(&scene);
+}
+
 void case_values_alone(verify_sheet *sheet)
 {
     rings(sheet);
     boxes(sheet);
+    fin(sheet);
 }
