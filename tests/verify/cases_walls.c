@@ -126,13 +126,13 @@ void case_wall_edges(verify_sheet *sheet)
     static const int ring = RING, bracket = BRACKET;
     // Depths below the edges of a bracket have kinks, over which forces on the points of a wall jump: an error of the first order, which few points do not average out.
     const bar smooth = {1e-5, 1e-4}, sharp[2] = {{5e-3, 5e-2}, {2e-4, 2e-3}};
-    const int flights = sheet->thorough ? 40 : 2;
+    const int flights = sheet->thorough ? 40 : 2, slow = sheet->thorough ? 10 : 1;
     for (size_t k = 0; k < sizeof targets / sizeof *targets; ++k)
         for (pls_faces faces = PLS_FACES_MANIFOLD; faces <= PLS_FACES_VOLUME; ++faces)
         {
             fly(sheet, &targets[k], "convex grains", convex, sizeof convex / sizeof *convex, faces, flights, smooth);
             if (!sheet->thorough && k % 3 != 0) continue; // these take long
-            fly(sheet, &targets[k], "rings", &ring, 1, faces, flights / 2, smooth);
-            fly(sheet, &targets[k], "brackets", &bracket, 1, faces, flights / 2, sharp[faces == PLS_FACES_VOLUME]);
+            fly(sheet, &targets[k], "rings", &ring, 1, faces, slow, smooth);
+            fly(sheet, &targets[k], "brackets", &bracket, 1, faces, slow, sharp[faces == PLS_FACES_VOLUME]);
         }
 }
