@@ -4,7 +4,7 @@
 //
 //     W = 1/2 [ sum over A of a d_B^2 / 2 + sum over B of a d_A^2 / 2 ],       Q likewise with d^3 / 3,
 //
-// for walls the sums over A alone, whole. For parallel faces these are the integrals of t^2/2 and t^3/3 over the area of touch, t its local overlap, which the laws of faces.c are
+// for half-spaces, and for walls of pieces where A is convex, the sums over A alone, whole. For parallel faces these are the integrals of t^2/2 and t^3/3 over the area of touch, t its local overlap, which the laws of faces.c are
 // about, and so the laws are the same here. Forces are exact gradients of the sums (a piece is pushed by a d along the other body's gradient), so no energy is won or lost however
 // coarse the pieces: what is off is how stiff a contact is from place to place.
 //
@@ -39,6 +39,7 @@
 static const double point_like = 1e-10; ///< of the size squared: moments of no area
 static const double flat_places = 0.05; ///< share of the surface that makes a shape one with flat places
 static const double box_like = 0.5;     ///< lesser exponent of a superquadric below which it has flat places
+static const double thinnest_box = 4.0; ///< longest by shortest half axis of these
 static const double sheet_cell = 2.0;   ///< longest edge of pieces of walls, of the spacing of the body's own: about as large
 
 // ---- which pairs ----------------------------------------------------------------------------------------------------------------------------------------
@@ -47,8 +48,11 @@ static bool is_concave(const pls_shape *s) { return !s->convex && s->sample; }
 static bool is_ball(const pls_shape *s) { return s->polytope && s->polytope->vertex_count == 1; }
 static bool is_flat_by_values(const pls_shape *s) { return s->convex && !s->ops->support && s->sample && s->sample->flat > flat_places; }
 
-/// Of superquadrics those with flat ends or sides.
-static bool is_box_like(const pls_shape *s) { return s->ops == &pls_superquadric_shape && pls_superquadric_exponent(s) < box_like; }
+/// Of superquadrics those with flat ends or sides, if they are not so thin that a field of their distance would take too many values.
+static bool is_box_like(const pls_shape *s)
+{
+    return s->ops == &pls_superquadric_shape && pls_superquadric_exponent(s) < box_like && pls_superquadric_aspect(s) < thinnest_box;
+}
 
 static bool is_cylinder(const pls_shape *s) { return s->ops == &pls_cylinder_shape; }
 
@@ -367,6 +371,13 @@ static void cut_facet(sheet *h, const pls_vec3 *v, int corners)
     }
 }
 
+double pls_sheet_deepest(const pls_posed *a)
+{
+    const pls_surface_sample *sample = a->shape->sample;
+    // Inner balls are half as large as fit. No middle of a cell need come nearer to theirs than cells are apart.
+    return fmax(2.0 * sample->largest_inner - sample->spacing, sample->largest_inner) * a->scale;
+}
+
 double pls_sheet_in(const pls_posed *a, const pls_posed *facet, pls_vec3 origin, pls_overlap_integrals *P)
 {
     const int corners = facet->shape->dimension;
@@ -378,7 +389,9 @@ double pls_sheet_in(const pls_posed *a, const pls_posed *facet, pls_vec3 origin,
                .inside = to_holder(&body, facet, origin),
                .origin = origin,
                .normal = pls_posed_turn(facet, pls_shape_facet(facet->shape)->normal),
-               .cell = sheet_cell * a->shape->sample->spacing / to_body,
+               .cell = fmin(sheet_cell * a->shape->sample->spacing, 2.0 * a->shape->sample->largest_inner) /
+                       to_body, // at most half as wide as it is thick
+
                .to_body = to_body,
                .margin = facet->shape->margin * to_body,
                .flat = corners == 2};

@@ -20,6 +20,8 @@ double pls_sampled_behind(const pls_posed *a, const pls_posed *facet, const pls_
 bool pls_is_sheet_pair(const pls_shape *a, const pls_shape *facet);
 /// The integrals of such a pair about `origin`; returns the largest depth of the facet in A, 0 for none [m].
 double pls_sheet_in(const pls_posed *a, const pls_posed *facet, pls_vec3 origin, pls_overlap_integrals *P);
+/// How deep a facet may be in such a body before it is past its middle, where the thickest part of that is, and is pushed on [m].
+double pls_sheet_deepest(const pls_posed *a);
 
 /// The area of touch of one piece of a body of that size is none.
 void pls_sampled_area(double size, pls_touch *touch);

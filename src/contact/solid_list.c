@@ -138,9 +138,9 @@ static bool lets_go(const pls_shape *shape)
 }
 
 /// Contacts that go by pieces of surfaces need those of both.
-static pls_status sample_parts(const pls_shape *a, const pls_shape *b)
+static pls_status sample_parts(const pls_law *law, const pls_shape *a, const pls_shape *b)
 {
-    if (!pls_is_sampled_pair(a, b)) return PLS_OK;
+    if (law->narrow.faces == PLS_FACES_POINT || !pls_is_sampled_pair(a, b)) return PLS_OK;
     PLS_TRY(pls_shape_need_sample(a));
     return pls_shape_need_sample(b);
 }
@@ -152,7 +152,7 @@ static pls_status add_candidate(pls_solid_list *list, const pls_solid_source *s,
     uint16_t law = pls_law_table_find(s->laws, i->material, j->material);
     if (law == PLS_NO_LAW) return missing_law(s, pair->owner, pair->partner);
     PLS_TRY(check_solver(s, &s->laws->law[law], pair->owner, pair->partner, part_i, part_j));
-    PLS_TRY(sample_parts(shape_of_part(s->shape[i->shape], part_i), shape_of_part(s->shape[j->shape], part_j)));
+    PLS_TRY(sample_parts(&s->laws->law[law], shape_of_part(s->shape[i->shape], part_i), shape_of_part(s->shape[j->shape], part_j)));
     PLS_TRY(room_for(list, list->count + 1));
     size_t c = list->count++;
     list->pair[c] = (pls_solid_pair){.row_i = pair->owner, .row_j = pair->partner, .law = law, .lets_go = lets_go(s->shape[j->shape])};

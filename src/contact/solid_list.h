@@ -38,7 +38,7 @@ typedef struct pls_solid_memory
     double arm[3];                       ///< from the centre of i to where friction acted at the last step [m]
     double lever;                        ///< at which turning about the normal slips, at the last step; 0: touched at a point [m]
     double
-        front; ///< of a facet that touches, maybe in the shade of others: 1 or -1, the side of its normal on which i was when it came; else 0
+        front; ///< of a facet that touches, maybe in the shade of others: 1 or -1, the side of its normal on which i was when it came, or of what is on no side PLS_WALL_TOUCHED or PLS_WALL_PASSED; else 0
     pls_pair_state state;
 } pls_solid_memory;
 

@@ -3,12 +3,15 @@
 // Facets of one patch do (they are level to 15 degrees), and so do the two beside a ridge, where the body lies over an edge of the wall as over that of a box. What is in a
 // valley touches both of its slopes, each by itself, like a ball in a groove. Facets that a body meets from different sides do not: the top of a plate and its bottom.
 //
+// To bodies that are not convex, which have no side, only facets of one patch are one: always the same ones, so that energies are the same on all ways.
+//
 // Which candidates have to do with the contact: those that the body passes through; those it is nearer to than some times as deep as it is in others, since of what is behind such a facet
 // it may have a part although it does not reach the facet itself (beside a ridge, and beyond the bottom of a valley, where the plane of the one slope goes on behind the other: at a bend b
 // as far as depth/tan(b)); and those that touched at the last step: a body that turns about a rim may still have a part behind it when it no longer reaches through.
 
 #include "contact/wall_groups.h"
 
+#include "contact/sampled_touch.h"
 #include "contact/wall_touch.h"
 
 static const double nearness = 12.0; ///< of the deepest depth: gap up to which a facet may matter; valleys of 5 degrees
@@ -151,7 +154,7 @@ static void find_fronts(const pls_solid_list *list, facets *f)
 {
     if (!f->sides)
     {
-        for (size_t k = 0; k < f->count; ++k) f->front[k] = 1.0;
+        for (size_t k = 0; k < f->count; ++k) f->front[k] = PLS_WALL_TOUCHED;
         return;
     }
     for (uint16_t k = 0; k < f->count; ++k)
@@ -320,6 +323,15 @@ static bool sum_up(pls_solid_list *list, const pls_contact_input *in, facets *f,
     return true;
 }
 
+/// Of a body that is on no side.
+static double how_far(const pls_solid_list *list, const pls_contact_input *in, size_t c, double depth)
+{
+    if (list->memory[c].front == PLS_WALL_PASSED) return PLS_WALL_PASSED;
+    pls_solid_parts p;
+    pls_solid_parts_of(list, in, c, &p);
+    return depth > pls_sheet_deepest(p.a) ? PLS_WALL_PASSED : PLS_WALL_TOUCHED;
+}
+
 static void touch_group(pls_solid_list *list, const pls_contact_input *in, facets *f, uint16_t group, size_t first, uint8_t *next)
 {
     bool met = false;
@@ -331,7 +343,7 @@ static void touch_group(pls_solid_list *list, const pls_contact_input *in, facet
     {
         if (!f->any[k] || first_of(f, k) != group) continue;
         next[f->candidate[k] - first] = PLS_SOLID_SHADED;
-        list->memory[f->candidate[k]].front = f->front[k];
+        list->memory[f->candidate[k]].front = f->sides ? f->front[k] : how_far(list, in, f->candidate[k], touch.depth);
     }
     next[leader - first] = PLS_SOLID_TOUCHES;
     list->touch[leader] = touch;

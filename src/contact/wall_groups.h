@@ -4,6 +4,10 @@
 
 #include "contact/solid_contact.h"
 
+/// The `front` of candidates whose body may be on both sides of a wall: of any, and where the wall is past the middle of its thickness, for as long as it touches.
+#define PLS_WALL_TOUCHED 1.0
+#define PLS_WALL_PASSED  2.0
+
 /// Candidates first .. last are all of one pair of bodies, and their depths are known. Of those on facets `next` gets the PLS_SOLID_ states: of each group of facets one candidate
 /// touches, and its touch becomes that of all of them; the rest are in its shade. Of more than 16384 facets that a part of the body is near
 /// to those that it touches count, and of these the first 16384.

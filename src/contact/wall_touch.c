@@ -4,6 +4,8 @@
 // faces.c; they add up, and the laws act on the sums. So a box over a seam of two triangles rests on one spring, not on two; it passes the seam without a jump, as what comes to
 // the one comes off the other; and the edge of a table of triangles pushes as that of a box.
 //
+// Bodies that are not convex have no side of the wall: there the facets are what is in the body (sampled_touch.c), and each patch is a sum of its own.
+//
 // Of rounded bodies the core counts, in the field behind fronts that are raised by the margin. Over level places that is the same; over a ridge the raised fronts meet in a bevel,
 // not in a round edge.
 
@@ -20,7 +22,7 @@ enum kind { NONE, FACES, CYLINDER, LINE, PIECES, SHEET };
 static enum kind kind_of(const pls_posed *a, const pls_posed *facet)
 {
     if (pls_is_sheet_pair(a->shape, facet->shape)) return SHEET;
-    if (pls_is_sampled_pair(a->shape, facet->shape)) return PIECES;
+    if (a->shape->sample && pls_is_sampled_pair(a->shape, facet->shape)) return PIECES;
     if (pls_has_faces(a->shape)) return FACES;
     if (pls_is_thick_cylinder(a)) return CYLINDER;
     return pls_has_line(a->shape) ? LINE : NONE;
@@ -31,7 +33,11 @@ bool pls_is_wall_pair(const pls_posed *a, const pls_posed *facet, const pls_narr
     return options->faces != PLS_FACES_POINT && pls_is_facet(facet->shape) && kind_of(a, facet) != NONE;
 }
 
-bool pls_wall_needs_no_depth(const pls_posed *a, const pls_posed *facet) { return pls_is_sampled_pair(a->shape, facet->shape); }
+bool pls_wall_needs_no_depth(const pls_posed *a, const pls_posed *facet)
+{
+    const enum kind kind = kind_of(a, facet);
+    return kind == PIECES || kind == SHEET;
+}
 
 bool pls_wall_has_sides(const pls_posed *a, const pls_posed *facet) { return !pls_is_sheet_pair(a->shape, facet->shape); }
 

@@ -20,6 +20,8 @@ static inline const pls_shape *pls_shape_concave_part(const pls_shape *shape)
 }
 /// The lesser of the exponents of a superquadric: far below 1 it is flat at its ends or sides.
 double pls_superquadric_exponent(const pls_shape *superquadric);
+/// Its longest half axis by its shortest.
+double pls_superquadric_aspect(const pls_shape *superquadric);
 /// A half-space or half-plane.
 static inline bool pls_shape_is_plane(const pls_shape *shape) { return shape->ops->sdf == pls_plane_shape.sdf; }
 

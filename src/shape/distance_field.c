@@ -4,7 +4,11 @@
 
 #include "base/alloc.h"
 
-enum { CELLS = 24, MORE = 3 };  ///< along the longest half axis; beyond it, of which the last ones only lend their values
+enum {
+    CELLS = 24, ///< along the longest half axis
+    LEAST = 8,  ///< along the shortest
+    MORE = 3    ///< beyond what is known, to lend their values
+};
 static const double out = 0.15; ///< of the longest half axis: how far the field goes beyond the bounds
 
 struct pls_distance_field
@@ -21,7 +25,8 @@ static pls_status fill(const pls_shape *shape, pls_distance_field *f)
 {
     f->half = shape->upper, f->dimension = shape->dimension;
     const double half[3] = {f->half.x, f->half.y, f->half.z}, longest = fmax(half[0], fmax(half[1], half[2]));
-    f->spacing = longest / CELLS, f->reach = out * longest;
+    const double shortest = fmin(half[0], f->dimension == 2 ? half[1] : fmin(half[1], half[2]));
+    f->spacing = fmin(longest / CELLS, shortest / LEAST), f->reach = out * longest;
     size_t count = 1;
     for (int a = 0; a < 3; ++a)
     {

@@ -7,7 +7,7 @@
 /// No gradient of a field is longer: each component is a mean of slopes of the distance, over places that differ a little.
 #define PLS_FIELD_SLOPE 1.75
 
-/// Of a bounded shape that is its own mirror image about all planes of its frame: takes as long as some ten thousand calls of its SDF. OUT_OF_MEMORY.
+/// Of a bounded shape that is its own mirror image about all planes of its frame: takes as long as some thirty thousand calls of its SDF, twice as many where its axes are as 4 to 1. OUT_OF_MEMORY.
 pls_status pls_distance_field_make(const pls_shape *shape, pls_distance_field **out);
 void pls_distance_field_free(pls_distance_field *field);
 

@@ -53,6 +53,12 @@ double pls_superquadric_exponent(const pls_shape *s)
     return s->dimension == 2 ? s->values[EAST_WEST] : fmin(s->values[NORTH_SOUTH], s->values[EAST_WEST]);
 }
 
+double pls_superquadric_aspect(const pls_shape *s)
+{
+    const double *half = s->values, third = s->dimension == 2 ? half[0] : half[2];
+    return fmax(half[0], fmax(half[1], third)) / fmin(half[0], fmin(half[1], third));
+}
+
 static double dual_exponent(double epsilon) { return 2.0 / (2.0 - epsilon); }
 
 // ---- the support function in logarithms ---------------------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 // A look at all contacts also tells how much nearer bodies would have to come for the next one to find anything. Until they can have moved so far
 // (world->path), it would find nothing, and is left out.
 
+#include "contact/wall_groups.h"
 #include "step/world.h"
 
 #include "base/parallel.h"
@@ -127,6 +128,17 @@ static pls_status overlap_of_balls(pls_world *world)
     return PLS_OK;
 }
 
+static pls_status passed_failure(const pls_world *world, uint32_t i, uint32_t j)
+{
+    const pls_bodies *b = &world->bodies;
+    return pls_fail(PLS_RUNAWAY_OVERLAP,
+                    "a wall, body %u of '%s', has come past the middle of body %u of '%s' by t = %g s, step %llu, and would push it on to "
+                    "the other side. Likely causes: bodies placed into each other, contacts too soft for the load, or a time step too "
+                    "large. Mend that, or raise guard.max_overlap above 1",
+                    b->kind[j].number, pls_world_group_name(world, (pls_group_id){b->kind[j].group}), b->kind[i].number,
+                    pls_world_group_name(world, (pls_group_id){b->kind[i].group}), world->time, (unsigned long long)world->step);
+}
+
 pls_status pls_guard_overlap(pls_world *world)
 {
     const pls_bodies *b = &world->bodies;
@@ -135,6 +147,8 @@ pls_status pls_guard_overlap(pls_world *world)
     {
         const pls_solid_pair *pair = &world->solids.pair[c];
         if (world->solids.memory[c].touches == PLS_SOLID_APART) continue;
+        if (world->solids.memory[c].front == PLS_WALL_PASSED && world->def.max_overlap <= 1.0)
+            return passed_failure(world, pair->row_i, pair->row_j);
         const double radius = fmin(b->place[pair->row_i].radius, b->place[pair->row_j].radius), limit = world->def.max_overlap * radius;
         if (!(world->solids.touch[c].reach > limit)) continue;
         const pls_contact_input input = pls_contact_input_of(world, 0.0);

@@ -142,36 +142,65 @@ static void forces_in_the_plane_are_gradients_of_the_energy(void **state)
     pls_shape_free(hook), pls_shape_free(plate), pls_shape_free(floor);
 }
 
-static pls_shape *wall_of(const char *path)
+static pls_shape *wall_of(const char *path, double rounding)
 {
-    const double values[] = {0.0, 1.0}; // rounding, scale
+    const double values[] = {rounding, 1.0}; // rounding, scale
     return solids_make(&pls_mesh_shape, 3, &(pls_shape_input){VALUES(values), .path = path});
 }
 
-/// Rings on the edges of an octahedron of size 1 and on the rims of a sheet, x and y from -1 to 1: whatever side of the sheet parts of them are on.
+/// Rings of several sizes on the edges of an octahedron of size 1 and on the rims of sheets, x and y from -1 to 1, thin and thick: whatever side of the sheet parts of them are on.
 static void forces_on_walls_are_gradients_of_the_energy(void **state)
 {
     (void)state;
+    enum { WALLS = 3 };
     solids_seed(74);
-    pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1), *block = wall_of(PLS_TEST_DATA "/octahedron.obj"),
-              *sheet = wall_of(PLS_TEST_DATA "/sheet.obj");
-    int asked[2] = {0, 0};
-    for (int round = 0; round < 4000; ++round)
+    pls_shape *ring = MAKE(&values_ring, 3, 0.3, 0.1);
+    pls_shape *wall[WALLS] = {wall_of(PLS_TEST_DATA "/octahedron.obj", 0.0), wall_of(PLS_TEST_DATA "/sheet.obj", 0.0),
+                              wall_of(PLS_TEST_DATA "/sheet.obj", 0.04)};
+    int asked[WALLS] = {0};
+    for (int round = 0; round < 5000; ++round)
     {
-        const int on = round & 1;
-        const pls_posed b = pls_pose(on == 0 ? block : sheet, pls_vec(0, 0, 0), solids_turn(pls_vec(0, 0, 1), on == 0 ? 0.4 : 0.0), 1.0);
+        const int on = round % WALLS;
+        const double turned = on == 0 ? 0.4 : 0.0, grown = solids_uniform(0.7, 1.3);
+        const pls_posed b = pls_pose(wall[on], pls_vec(0, 0, 0), solids_turn(pls_vec(0, 0, 1), turned), on == 0 ? 0.9 : 1.0);
         const double x = solids_uniform(-1.1, 1.1), y = solids_uniform(-1.1, 1.1);
         const pls_vec3 near_sheet = pls_vec(round & 2 ? 1.0 + 0.3 * x : x, y, solids_uniform(-0.4, 0.4));
         const pls_vec3 place = on == 0 ? pls_scale(solids_direction(3), solids_uniform(0.6, 1.3)) : near_sheet;
-        const pls_posed a = pls_pose(ring, place, solids_turn(solids_direction(3), solids_uniform(0, 6)), 1.0);
+        const pls_posed a = pls_pose(ring, place, solids_turn(solids_direction(3), solids_uniform(0, 6)), grown);
         const pls_touch t = touch(&a, &b, PLS_FACES_MANIFOLD);
-        if (!(t.depth > 0.002) || t.depth > 0.08) continue; // deeper there is the middle of the tube
+        if (!(t.depth > 0.002) || t.depth > 0.08 * grown) continue; // deeper there is the middle of the tube
         expect_gradient(&a, &b, round & 4 ? PLS_FACES_VOLUME : PLS_FACES_MANIFOLD);
         ++asked[on];
     }
-    print_message("%d touches of an octahedron, %d of a sheet\n", asked[0], asked[1]);
-    assert_true(asked[0] > 40 && asked[1] > 40);
-    pls_shape_free(ring), pls_shape_free(block), pls_shape_free(sheet);
+    print_message("%d touches of an octahedron, %d of a sheet, %d of a thick one\n", asked[0], asked[1], asked[2]);
+    for (int k = 0; k < WALLS; ++k) assert_true(asked[k] > 40), pls_shape_free(wall[k]);
+    pls_shape_free(ring);
+    assert_int_equal(pls_memory_in_use(), 0);
+}
+
+/// The three quarters of a square on a polyline with free ends.
+static void forces_on_polylines_are_gradients_of_the_energy(void **state)
+{
+    (void)state;
+    solids_seed(77);
+    const pls_vec3 points[3] = {{-1, 0, 0}, {0.2, 0.1, 0}, {0.9, 0.8, 0}};
+    const double values[] = {0.0, 0.0}; // rounding, closed
+    pls_shape *hook = MAKE(&values_corner, 2, 0.3),
+              *line = solids_make(&pls_polyline_shape, 2, &(pls_shape_input){VALUES(values), .points = points, .point_count = 3});
+    int asked = 0;
+    for (int round = 0; round < 3000; ++round)
+    {
+        const pls_vec3 z = pls_vec(0.0, 0.0, 1.0), place = pls_vec(solids_uniform(-1.3, 1.2), solids_uniform(-0.4, 1.2), 0.0);
+        const pls_posed a = pls_pose(hook, place, solids_turn(z, solids_uniform(0, 6)), 1.0),
+                        b = pls_pose(line, pls_vec(0, 0, 0), pls_quat_identity(), 1.0);
+        const pls_touch t = touch(&a, &b, PLS_FACES_VOLUME);
+        if (!(t.depth > 0.005) || t.depth > 0.05) continue;
+        expect_gradient(&a, &b, round & 1 ? PLS_FACES_VOLUME : PLS_FACES_MANIFOLD);
+        ++asked;
+    }
+    print_message("%d touches\n", asked);
+    assert_true(asked > 40);
+    pls_shape_free(hook), pls_shape_free(line);
     assert_int_equal(pls_memory_in_use(), 0);
 }
 
@@ -366,7 +395,8 @@ static void pairs_are_what_their_shapes_make_them(void **state)
               *ball = MAKE(&pls_sphere_shape, 3, 0.4), *plain = solids_box(3, 0.2, 0.2, 0.2, 0.0), *floor = solids_plane(3),
               *egg = MAKE(&pls_ellipsoid_shape, 3, 0.3, 0.2, 0.1, 0.0), *can = MAKE(&pls_cylinder_shape, 3, 0.3, 0.4, 0.0),
               *die = MAKE(&pls_superquadric_shape, 3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.0),
-              *bean = MAKE(&pls_superquadric_shape, 3, 0.3, 0.3, 0.3, 0.7, 0.7, 0.0);
+              *bean = MAKE(&pls_superquadric_shape, 3, 0.3, 0.3, 0.3, 0.7, 0.7, 0.0),
+              *card = MAKE(&pls_superquadric_shape, 3, 0.3, 0.3, 0.07, 0.3, 0.3, 0.0);
     assert_true(pls_is_sampled_pair(can, can) && pls_is_sampled_pair(can, ring));
     assert_false(pls_is_sampled_pair(can, plain) || pls_is_sampled_pair(can, floor) || pls_is_sampled_pair(can, egg));
     assert_true(pls_is_sampled_pair(ring, ring) && pls_is_sampled_pair(ring, floor) && pls_is_sampled_pair(plain, ring));
@@ -376,10 +406,10 @@ static void pairs_are_what_their_shapes_make_them(void **state)
     assert_true(pls_is_sampled_pair(die, die) && pls_is_sampled_pair(die, plain) && pls_is_sampled_pair(floor, die) &&
                 pls_is_sampled_pair(die, can));
     assert_false(pls_is_sampled_pair(bean, bean) || pls_is_sampled_pair(bean, plain) || pls_is_sampled_pair(die, egg) ||
-                 pls_is_sampled_pair(die, bean));
+                 pls_is_sampled_pair(die, bean) || pls_is_sampled_pair(card, plain));
     assert_false(pls_is_sampled_pair(plain, plain) || pls_is_sampled_pair(plain, floor) || pls_is_sampled_pair(egg, egg));
     pls_shape_free(ring), pls_shape_free(box), pls_shape_free(round), pls_shape_free(ball), pls_shape_free(plain), pls_shape_free(floor),
-        pls_shape_free(egg), pls_shape_free(can), pls_shape_free(die), pls_shape_free(bean);
+        pls_shape_free(egg), pls_shape_free(can), pls_shape_free(die), pls_shape_free(bean), pls_shape_free(card);
 }
 
 int main(void)
@@ -388,6 +418,7 @@ int main(void)
         cmocka_unit_test(forces_are_gradients_of_the_energy),
         cmocka_unit_test(forces_in_the_plane_are_gradients_of_the_energy),
         cmocka_unit_test(forces_on_walls_are_gradients_of_the_energy),
+        cmocka_unit_test(forces_on_polylines_are_gradients_of_the_energy),
         cmocka_unit_test(forces_of_box_like_superquadrics_are_gradients_of_the_energy),
         cmocka_unit_test(a_face_on_a_face_is_as_deep_as_it_is),
         cmocka_unit_test(a_few_pieces_make_a_small_area),

@@ -63,16 +63,20 @@ static void fields_are_near_to_the_distance(void **state)
 static void over_flat_places_they_are_the_distance(void **state)
 {
     (void)state;
-    pls_shape *shape = superquadric(3, 0.2, 0.2);
-    pls_distance_field *field = field_of(shape);
-    for (double x = -0.1; x < 0.11; x += 0.05)
-        for (double d = -0.01; d < 0.05; d += 0.01)
-        {
-            pls_vec3 g;
-            assert_true(fabs(pls_distance_field_at(field, pls_vec(x, 0.08, 0.25 + d), &g) - d) < 2e-7);
-            assert_true(pls_length(pls_sub(g, pls_vec(0, 0, 1))) < 1e-4);
-        }
-    pls_distance_field_free(field), pls_shape_free(shape);
+    for (double half = 0.25; half > 0.12; half *= 0.5) // as 2 and 4 to 1
+    {
+        const double values[] = {0.5, 0.4, half, 0.2, 0.2, 0.0};
+        pls_shape *shape = solids_make(&pls_superquadric_shape, 3, &(pls_shape_input){VALUES(values)});
+        pls_distance_field *field = field_of(shape);
+        for (double x = -0.1; x < 0.11; x += 0.05)
+            for (double d = -0.01; d < 0.05; d += 0.01)
+            {
+                pls_vec3 g;
+                assert_true(fabs(pls_distance_field_at(field, pls_vec(x, 0.08, half + d), &g) - d) < 2e-7);
+                assert_true(pls_length(pls_sub(g, pls_vec(0, 0, 1))) < 1e-4);
+            }
+        pls_distance_field_free(field), pls_shape_free(shape);
+    }
 }
 
 static void gradients_are_those_of_the_values(void **state)

@@ -4,6 +4,7 @@
 #include <particls/particls.h>
 
 #include "support/numbers.h"
+#include "support/values_alone.h"
 #include "support/verify.h"
 
 #include <math.h>
@@ -222,6 +223,36 @@ static void an_overlap_made_by_a_new_body_is_seen_at_the_next_look(void **state)
     pls_world_destroy(world);
 }
 
+/// A ring that falls flat on a sheet: its contact holds the half of its tube, 0.1 m; what falls harder is told of before it is through. Fifty steps are the tube's radius.
+static void a_wall_that_comes_past_the_middle_of_a_ring_stops_the_run(void **state)
+{
+    (void)state;
+    const double speed[2] = {0.2, 2.0};
+    for (int hard = 0; hard < 2; ++hard)
+    {
+        pls_world_def def = pls_default_world_def(3);
+        def.dt = 1e-3;
+        const verify_value weak[] = {{"kn", 1.0}, {"ks", 0.0}, {"friction", 0.0}, {NULL, 0.0}};
+        verify_scene s = verify_open(&def, "elastic", weak);
+        const double values[] = {0.3, 0.1};
+        pls_body_def ring =
+            verify_body_def(&s, verify_use_shape(&s, &values_ring, &(pls_shape_input){VALUES(values)}), pls_vec(0.1, 0.2, 0.3));
+        ring.velocity = pls_vec(0.0, 0.0, -speed[hard]);
+        verify_add(&s, &ring);
+        pls_body_def wall = verify_body_def(&s, verify_add_mesh(&s, PLS_TEST_DATA "/sheet.obj"), pls_vec(0, 0, 0));
+        wall.motion.axes = PLS_AXIS_ALL;
+        verify_add(&s, &wall);
+        if (hard)
+        {
+            step_that_fails(s.world, true, PLS_RUNAWAY_OVERLAP);
+            assert_non_null(strstr(pls_last_message(), "has come past the middle of body 0"));
+        }
+        else
+            assert_int_equal(pls_world_run(s.world, 3000), PLS_OK);
+        verify_close(&s);
+    }
+}
+
 static void a_body_that_flies_away_stops_the_run_at_the_next_look(void **state)
 {
     (void)state;
@@ -243,6 +274,7 @@ int main(void)
         cmocka_unit_test(a_refused_step_tells_of_contacts_still_to_come),
         cmocka_unit_test(an_overlap_that_grows_slowly_stops_the_run_at_the_next_look),
         cmocka_unit_test(an_overlap_made_by_a_new_body_is_seen_at_the_next_look),
+        cmocka_unit_test(a_wall_that_comes_past_the_middle_of_a_ring_stops_the_run),
         cmocka_unit_test(a_body_that_flies_away_stops_the_run_at_the_next_look),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -125,7 +125,7 @@ void case_wall_edges(verify_sheet *sheet)
     static const int convex[] = {GRAIN_BOX, GRAIN_STONE, GRAIN_PRISM, GRAIN_SOAP, GRAIN_CYLINDER, GRAIN_CAPSULE};
     static const int ring = RING, bracket = BRACKET;
     // Depths below the edges of a bracket have kinks, over which forces on the points of a wall jump: an error of the first order, which few points do not average out.
-    const bar smooth = {1e-5, 1e-4}, sharp[2] = {{5e-3, 5e-2}, {2e-4, 2e-3}};
+    const bar smooth = {1e-5, 1e-4}, sharp[2] = {{3e-3, 2e-2}, {1e-4, 1e-3}};
     const int flights = sheet->thorough ? 40 : 2, slow = sheet->thorough ? 10 : 1;
     for (size_t k = 0; k < sizeof targets / sizeof *targets; ++k)
         for (pls_faces faces = PLS_FACES_MANIFOLD; faces <= PLS_FACES_VOLUME; ++faces)
