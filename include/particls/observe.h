@@ -27,7 +27,8 @@ enum {
     PLS_MEASURE_ENERGY = 16,      ///< energies by kind [J]
     PLS_MEASURE_MOMENTUM = 32,    ///< linear and angular momentum
     PLS_MEASURE_POROSITY = 64,    ///< 1 - solid volume / volume
-    PLS_MEASURE_MASS = 128        ///< number and mass of the bodies [kg]
+    PLS_MEASURE_MASS = 128,       ///< number and mass of the bodies [kg]
+    PLS_MEASURE_FRAGMENTS = 256   ///< what bonds hold together
 };
 
 typedef enum pls_volume_kind {
@@ -48,6 +49,18 @@ typedef struct pls_collection_def
     bool include_walls;    ///< count contacts with unbounded bodies in stress, tangent and fabric; true by default (P1)
 } pls_collection_def;
 
+/// Bodies that bonds hold together, over any number of others; bodies without families belong to none, those whose bonds are all broken are one each.
+typedef struct pls_fragments
+{
+    uint64_t count;    ///< that have a body of the collection
+    uint64_t single;   ///< of one body
+    uint64_t bodies;   ///< of the largest
+    double largest;    ///< its mass [kg]; the largest is that of the largest mass, of equal ones that with the lowest number
+    double second;     ///< mass of the second largest, 0: there is one at most [kg]
+    double mean;       ///< mass of all by their number [kg]
+    pls_vec3 momentum; ///< of the largest [kg m/s]
+} pls_fragments;
+
 /// What was measured. Components that do not exist in 2D are zero.
 typedef struct pls_collection
 {
@@ -63,6 +76,7 @@ typedef struct pls_collection
     double porosity;
     uint64_t bodies; ///< bounded ones
     double mass;     ///< of those that have one: fixed and driven bodies have none [kg]
+    pls_fragments fragments;
 } pls_collection;
 
 pls_collection_def pls_default_collection_def(void);

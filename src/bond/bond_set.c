@@ -354,8 +354,6 @@ static double length_of(const pls_bond_set *set, size_t point, size_t slot)
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-static inline bool holds(const pls_bond_set *set, size_t slot) { return set->family.length[slot] < PLS_NO_LENGTH; }
-
 /// Do something with a family of links as they are now, a batch at a time. `slot`: of the first of `count` bonds.
 typedef void link_action(const pls_link_work *work, size_t slot, size_t count, void *context);
 
@@ -392,7 +390,7 @@ double pls_bond_energy(const pls_bond_set *set, size_t point)
     double spread = 0.0, stretched = 0.0;
     for (size_t slot = first_slot(set, point); slot < first_slot(set, point) + set->family.size[point]; ++slot)
     {
-        if (!holds(set, slot)) continue;
+        if (!pls_bond_is_whole(set, slot)) continue;
         const double xi = fabs(set->family.length[slot]), e = length_of(set, point, slot) - xi;
         spread += set->weight[slot] * e;
         stretched += set->weight[slot] * set->twice * (double)set->share[slot] * e * e / xi;
@@ -435,7 +433,7 @@ static pls_bond_end other_end(const pls_bond_set *set, pls_bond_end end)
 
 bool pls_bond_break(pls_bond_set *set, pls_bond_end end)
 {
-    if (!holds(set, end.slot)) return false;
+    if (!pls_bond_is_whole(set, end.slot)) return false;
     const pls_bond_end both[2] = {end, other_end(set, end)};
     for (int k = 0; k < 2; ++k)
     {
@@ -499,14 +497,15 @@ void pls_bond_break_overlong(pls_bond_set *set, const pls_bodies *bodies, const 
 size_t pls_bond_lost(const pls_bond_set *set, size_t point)
 {
     size_t broken = 0;
-    for (size_t slot = first_slot(set, point); slot < first_slot(set, point) + set->family.size[point]; ++slot) broken += !holds(set, slot);
+    for (size_t slot = first_slot(set, point); slot < first_slot(set, point) + set->family.size[point]; ++slot)
+        broken += !pls_bond_is_whole(set, slot);
     return broken;
 }
 
 void pls_bond_read_broken(const pls_bond_set *set, uint8_t *broken)
 {
     for (size_t p = 0; p < set->family.count; ++p)
-        for (size_t slot = first_slot(set, p), k = 0; k < set->family.size[p]; ++k) *broken++ = !holds(set, slot + k);
+        for (size_t slot = first_slot(set, p), k = 0; k < set->family.size[p]; ++k) *broken++ = !pls_bond_is_whole(set, slot + k);
 }
 
 static bool is_there(const pls_bond_point *point, const pls_bodies *bodies)
@@ -523,9 +522,9 @@ static pls_status check_broken(const pls_bond_set *set, const pls_bodies *bodies
         {
             const uint32_t number = set->family.point[p].number;
             const pls_bond_end other = other_end(set, (pls_bond_end){(uint32_t)p, slot});
-            if (holds(set, slot) != holds(set, other.slot))
+            if (pls_bond_is_whole(set, slot) != pls_bond_is_whole(set, other.slot))
                 return pls_fail(PLS_CORRUPT, "a saved bond of body %u in '%s' is broken at one end only", number, set->name);
-            if (holds(set, slot) && !is_there(&set->family.point[p], bodies))
+            if (pls_bond_is_whole(set, slot) && !is_there(&set->family.point[p], bodies))
                 return pls_fail(PLS_CORRUPT, "a saved bond in '%s' holds body %u, which is not there", set->name, number);
         }
     return PLS_OK;
@@ -547,13 +546,13 @@ pls_status pls_bond_write_broken(pls_bond_set *set, const uint8_t *broken)
     for (size_t p = 0; p < set->family.count; ++p)
         for (size_t slot = first_slot(set, p), k = 0; k < set->family.size[p]; ++k, ++broken)
         {
-            if (*broken && holds(set, slot + k))
+            if (*broken && pls_bond_is_whole(set, slot + k))
             {
                 set->family.length[slot + k] = PLS_NO_LENGTH;
                 if (set->weight) set->weight[slot + k] = 0.0;
                 ++set->gone;
             }
-            else if (!*broken && !holds(set, slot + k))
+            else if (!*broken && !pls_bond_is_whole(set, slot + k))
                 return pls_fail(PLS_CORRUPT,
                                 "a bond of body %u in '%s' is broken that holds in the saved state: bonds cannot be mended; restore into a "
                                 "world made anew",
@@ -589,7 +588,7 @@ void pls_bond_cut(pls_bond_set *set, int dimension, pls_vec3 a, pls_vec3 b, pls_
         for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + f->size[p]; ++slot)
         {
             const double *x = place_of(set, p), *y = place_of(set, f->partner[slot]);
-            if (holds(set, slot) && crosses(dimension, pls_vec(x[0], x[1], x[2]), pls_vec(y[0], y[1], y[2]), a, b, c))
+            if (pls_bond_is_whole(set, slot) && crosses(dimension, pls_vec(x[0], x[1], x[2]), pls_vec(y[0], y[1], y[2]), a, b, c))
                 pls_bond_break(set, (pls_bond_end){(uint32_t)p, slot});
         }
 }
@@ -601,5 +600,5 @@ bool pls_bond_holds(const pls_bond_set *set, uint32_t number, uint32_t partner)
                    q = partner < set->numbers ? set->point_of[partner] : PLS_NO_POINT;
     if (p == PLS_NO_POINT || q == PLS_NO_POINT) return false;
     const size_t slot = first_bond_to(set, p, q);
-    return slot < first_slot(set, p) + f->size[p] && pls_point_behind(f, f->partner[slot]) == q && holds(set, slot);
+    return slot < first_slot(set, p) + f->size[p] && pls_point_behind(f, f->partner[slot]) == q && pls_bond_is_whole(set, slot);
 }

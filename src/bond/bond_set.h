@@ -98,6 +98,8 @@ typedef void pls_bond_listener(void *context, uint32_t number, uint32_t partner)
 /// Break what is stretched too far, in order of points; within a step of length dt, whose mid-step velocities bodies have. Rows are used up.
 void pls_bond_break_overlong(pls_bond_set *set, const pls_bodies *bodies, const pls_domain *domain, double dt, pls_bond_listener *tell,
                              void *context);
+/// Whether the bond in a slot holds.
+static inline bool pls_bond_is_whole(const pls_bond_set *set, size_t slot) { return set->family.length[slot] < PLS_NO_LENGTH; }
 /// How many of a point's bonds are broken.
 size_t pls_bond_lost(const pls_bond_set *set, size_t point);
 /// Which bonds are broken, one byte each, in order; and back. CORRUPT: a bond that is to hold is broken.

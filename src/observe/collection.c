@@ -3,6 +3,7 @@
 #include <particls/observe.h>
 
 #include "base/alloc.h"
+#include "observe/fragments.h"
 #include "observe/sums.h"
 
 #include <string.h>
@@ -118,6 +119,7 @@ pls_status pls_measure_collection(const pls_world *world, const pls_collection_d
     out->volume = averaging_volume(def, selection.around.domain, &bodies);
     report_contacts(&contacts, bodies.bounded, def->quantities, out);
     report_bodies(&bodies, def->quantities, out);
+    if (def->quantities & PLS_MEASURE_FRAGMENTS) PLS_TRY(pls_measure_fragments(&selection, &out->fragments));
     if (def->quantities & PLS_MEASURE_ENERGY)
     {
         out->energy_normal = contacts.normal;

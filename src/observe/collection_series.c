@@ -82,6 +82,19 @@ static void put_momentum(column_sink *sink, const pls_collection *c, int dimensi
     }
 }
 
+static void put_fragments(column_sink *sink, const pls_fragments *f, int dimension)
+{
+    const double momentum[3] = {f->momentum.x, f->momentum.y, f->momentum.z};
+    put(sink, "fragments", "", "", (double)f->count);
+    put(sink, "fragments_of_one", "", "", (double)f->single);
+    put(sink, "fragment_mean", "", "kg", f->mean);
+    put(sink, "fragment_largest", "", "kg", f->largest);
+    put(sink, "fragment_second", "", "kg", f->second);
+    put(sink, "fragment_largest_bodies", "", "", (double)f->bodies);
+    for (int axis = 0; axis < dimension; ++axis)
+        put(sink, "fragment_largest_momentum", (char[2]){axis_letters[axis], 0}, "kg m/s", momentum[axis]);
+}
+
 /// `bonded`: there are bonds in the world.
 static void each_column(column_sink *sink, const pls_collection *c, unsigned quantities, int dimension, bool bonded)
 {
@@ -101,6 +114,7 @@ static void each_column(column_sink *sink, const pls_collection *c, unsigned qua
         put(sink, "bodies", "", "", (double)c->bodies);
         put(sink, "mass", "", "kg", c->mass);
     }
+    if (quantities & PLS_MEASURE_FRAGMENTS) put_fragments(sink, &c->fragments, dimension);
     put(sink, "volume", "", "m^3", c->volume);
 }
 
@@ -140,6 +154,11 @@ pls_status pls_series_collection(pls_world *world, const pls_collection_def *def
 {
     *series = (pls_series){0};
     pls_selection selection;
+    if ((def->quantities & PLS_MEASURE_FRAGMENTS) && !pls_world_has_bonds(world))
+        return pls_fail(
+            PLS_INVALID_ARGUMENT,
+            "a collection of '%s' asks for fragments, but there are no bonds: leave 'fragments' out of its quantities, or give bonds",
+            def->group[0] ? def->group : "all");
     PLS_TRY(pls_select(world, def, &selection)); // what is wrong with the definition is said now, not at the first look
     pls_status status = make_columns(def, pls_world_dimension(world), pls_world_has_bonds(world), series);
     if (status != PLS_OK) pls_series_free(series);

@@ -119,10 +119,11 @@ static pls_status parse_collection(const pls_scene *scene, const pls_node *node,
     {
         const char *name;
         unsigned bit;
-    } kinds[] = {{"stress", PLS_MEASURE_STRESS},     {"tangent", PLS_MEASURE_TANGENT},
-                 {"fabric", PLS_MEASURE_FABRIC},     {"coordination", PLS_MEASURE_COORDINATION},
-                 {"energy", PLS_MEASURE_ENERGY},     {"momentum", PLS_MEASURE_MOMENTUM},
-                 {"porosity", PLS_MEASURE_POROSITY}, {"mass", PLS_MEASURE_MASS}};
+    } kinds[] = {{"stress", PLS_MEASURE_STRESS},      {"tangent", PLS_MEASURE_TANGENT},
+                 {"fabric", PLS_MEASURE_FABRIC},      {"coordination", PLS_MEASURE_COORDINATION},
+                 {"energy", PLS_MEASURE_ENERGY},      {"momentum", PLS_MEASURE_MOMENTUM},
+                 {"porosity", PLS_MEASURE_POROSITY},  {"mass", PLS_MEASURE_MASS},
+                 {"fragments", PLS_MEASURE_FRAGMENTS}};
     pls_collection_def *collection = &def->collection;
     *collection = (pls_collection_def){.include_walls = pls_scene_boolean(node, "walls", true)};
     const pls_node *group = pls_node_get(node, "collection"), *quantities = pls_node_get(node, "quantities"),
@@ -135,6 +136,9 @@ static pls_status parse_collection(const pls_scene *scene, const pls_node *node,
         {
             if (strcmp(kinds[j].name, quantities->child[k]->text) == 0) collection->quantities |= kinds[j].bit;
         }
+        if (strcmp(quantities->child[k]->text, "fragments") == 0 && !pls_node_get(scene->root, "bonds"))
+            return pls_node_fail(quantities->child[k], "leave it out, or give `bonds`",
+                                 "fragments are what bonds hold together, and there are no 'bonds'");
     }
     if (volume->kind == PLS_NODE_MAP)
     {

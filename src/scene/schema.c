@@ -312,8 +312,8 @@ static const pls_key keys[] = {
      "stop when an overlap, of two bodies or with a wall, exceeds this fraction of the smaller radius (at a wall: the body's)"},
 
     {"observe_collection", "collection", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a body entry, or all"},
-    {"observe_collection", "quantities", PLS_KEY_WORDS, 0, 0, "stress|tangent|fabric|coordination|energy|momentum|porosity|mass", NULL, "",
-     "stress coordination energy", ANY, "what is measured"},
+    {"observe_collection", "quantities", PLS_KEY_WORDS, 0, 0, "stress|tangent|fabric|coordination|energy|momentum|porosity|mass|fragments",
+     NULL, "", "stress coordination energy", ANY, "what is measured"},
     {"observe_collection", "volume", PLS_KEY_NUMBER, OPEN, 0, "bounding_box|periodic", "volume", "m^3", "bounding_box", POSITIVE,
      "volume of the average; {box: ...} also picks the bodies and contacts inside"},
     {"observe_collection", "walls", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "true", ANY,

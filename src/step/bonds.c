@@ -330,6 +330,40 @@ void pls_bonds_note_damage(pls_world *world, uint32_t number)
     if (row != PLS_NO_ROW && all > 0) world->bodies.damage[row] = (float)((double)lost / (double)all);
 }
 
+/// The lowest number of a tree of which each body has a lower one of its fragment above it; halves the way for the next time.
+static uint32_t lowest(uint32_t *above, uint32_t number)
+{
+    while (above[number] != number) number = above[number] = above[above[number]];
+    return number;
+}
+
+static void join_families(const pls_bond_set *set, uint32_t *above)
+{
+    const pls_families *f = &set->family;
+    for (size_t p = 0; p < f->count; ++p)
+    {
+        const size_t first = (size_t)f->start[p] * PLS_BOND_VECTOR;
+        for (size_t slot = first; slot < first + f->size[p]; ++slot)
+        {
+            if (!pls_bond_is_whole(set, slot)) continue;
+            const uint32_t a = lowest(above, f->point[p].number), b = lowest(above, f->point[pls_point_behind(f, f->partner[slot])].number);
+            above[a > b ? a : b] = a > b ? b : a;
+        }
+    }
+}
+
+void pls_bonds_fragments(const pls_world *world, uint32_t *fragment)
+{
+    const size_t numbers = world->bodies.numbers;
+    for (size_t n = 0; n < numbers; ++n) fragment[n] = PLS_NO_FRAGMENT;
+    for (size_t s = 0; s < world->bond_count; ++s)
+        for (size_t n = 0; n < world->bond[s].numbers; ++n)
+            if (world->bond[s].point_of[n] != PLS_NO_POINT) fragment[n] = (uint32_t)n;
+    for (size_t s = 0; s < world->bond_count; ++s) join_families(&world->bond[s], fragment);
+    for (size_t n = 0; n < numbers; ++n)
+        if (fragment[n] != PLS_NO_FRAGMENT) fragment[n] = lowest(fragment, (uint32_t)n);
+}
+
 size_t pls_bonds_count(const pls_world *world)
 {
     size_t count = 0;

@@ -23,6 +23,9 @@ double pls_bonds_rate(const pls_world *world, uint32_t number, bool of_rotation)
 void pls_bonds_energies(const pls_world *world, double *stored, double *broken);
 /// Damage of a body as its sets have it now.
 void pls_bonds_note_damage(pls_world *world, uint32_t number);
+/// By numbers of bodies, `numbers` of them: the lowest number of those that bonds hold together with it, its own where nothing holds it; PLS_NO_FRAGMENT for bodies without families.
+#define PLS_NO_FRAGMENT UINT32_MAX
+void pls_bonds_fragments(const pls_world *world, uint32_t *fragment);
 /// Bonds of either direction of all sets, and their points.
 size_t pls_bonds_count(const pls_world *world);
 size_t pls_bonds_points(const pls_world *world);

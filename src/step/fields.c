@@ -85,8 +85,10 @@ static const pls_field pair_fields[] = {
      offsetof(pls_solid_memory, spring)},
     {"history", PLS_F64, PLS_LAW_MAX_HISTORY, PERSISTS, "", "the law's own numbers", 0, offsetof(pls_solid_memory, history)},
     {"normal", PLS_F64, 3, PERSISTS, "", "at the last step, from i to j", 0, offsetof(pls_solid_memory, normal)},
-    {"front", PLS_F64, 1, PERSISTS, "", "of a piece of a wall: 1 or -1, the side on which i was when it came, 0 where it does not touch", 0,
-     offsetof(pls_solid_memory, front)},
+    {"front", PLS_F64, 1, PERSISTS, "",
+     "of a piece of a wall: 1 or -1, the side on which i was when it came, 0 where it does not touch; 2: past the middle of i, which is on "
+     "no side",
+     0, offsetof(pls_solid_memory, front)},
     {"arm", PLS_F64, 3, PERSISTS, "m", "from the centre of i to where friction acted at the last step", 0, offsetof(pls_solid_memory, arm)},
     {"lever", PLS_F64, 1, PERSISTS, "m", "radius at which turning about the normal slips at the last step, 0: touched at a point", 0,
      offsetof(pls_solid_memory, lever)},

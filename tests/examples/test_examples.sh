@@ -173,6 +173,10 @@ for row in rows:
     for axis in "xy": near("momentum of the plate", row[f"momentum_{axis}"], 0, 1e-14)
 assert rows[10]["energy_bonds"] > 0 and rows[10]["energy_broken"] == 0 and rows[-1]["energy_broken"] > 1e-6, rows[-1]
 assert rows[-1]["energy_kinetic"] > 100 * rows[20]["energy_kinetic"], "the halves do not part"
+last = rows[-1]
+assert rows[0]["fragments"] == 1 and last["fragments"] >= 2, last
+near("a half by the other", last["fragment_second"] / last["fragment_largest"], 1, 1e-9)
+assert last["fragment_largest"] > 0.45 * rows[0]["fragment_largest"], last
 plate = json.load(open("plate/summary.json"))
 assert 0 < plate["bonds_broken"] < 0.2 * plate["bonds"], plate
 
