@@ -11,6 +11,8 @@ static const double gravity = 10.0, kn = 300.0;
 static const verify_value damped[] = {{"kn", kn}, {"ks", 0.5 * kn}, {"cn", 2.0}, {"cs", 1.0}, {"friction", 0.5}, {NULL, 0.0}};
 static const verify_value stiff[] = {{"kn", 3e3}, {"ks", 2e3}, {"cn", 10.0}, {"cs", 10.0}, {"friction", 0.5}, {NULL, 0.0}};
 static const verify_value elastic[] = {{"kn", kn}, {"ks", 0.0}, {"cn", 0.0}, {"cs", 0.0}, {"friction", 0.0}, {NULL, 0.0}};
+// So stiff that no corner goes into a wall by half of a grain's thickness, where the run would stop.
+static const verify_value elastic_on_walls[] = {{"kn", 3.0 * kn}, {"ks", 0.0}, {"cn", 0.0}, {"cs", 0.0}, {"friction", 0.0}, {NULL, 0.0}};
 
 static verify_scene open_on_floor(double dt, const verify_value *values)
 {
@@ -139,7 +141,7 @@ static void fin(verify_sheet *sheet)
     }
     verify_close(&scene);
 
-    scene = drop_on_fin(dt, elastic);
+    scene = drop_on_fin(dt, elastic_on_walls);
     sheet_below(sheet, largest_book_error(&scene, sheet->thorough ? 50 : 20, 100 * scale), 1e-2,
                 "rings and brackets on a sheet, no damping: relative error of the energy at dt = %g s", dt);
     verify_close(&scene);
