@@ -83,7 +83,33 @@ typedef struct pls_pair_stiffness
     double torsion; ///< GJ/l [N m]
 } pls_pair_stiffness;
 
-/// A bond law: `linear` or `pair`, one of them, and what goes with it.
+/// Most numbers that a family law may remember per bond, and per point.
+#define PLS_BOND_MAX_MEMORY 4
+
+/// The family of one point, for a state-based law that linear coefficients cannot say: what remembers, what yields, what is not linear. The law gives the energy E of the family and its derivatives by
+/// the extensions; the set adds up forces, those of a bond from both of its families. Arrays hold `count` values, a multiple of 8, are 64-byte aligned and do not overlap. Bonds that broke, and lanes that
+/// fill up, weigh nothing and have extension 0. With the weights the weighted volume of the undamaged family and the dilatation are
+///     m = sum weight reference / volume,     theta = dimension / (m volume) sum weight extension.
+typedef struct pls_family_batch
+{
+    size_t count;
+    int dimension;
+    const double *constants;  ///< what `prepare` left for the point's material
+    double volume;            ///< of the point, V_i [m^3]
+    double weighted;          ///< m of the undamaged family, sum w beta V_j xi^2 [m^5]
+    const double *reference;  ///< length of each bond when it was made, xi [m]
+    const double *extension;  ///< length now less reference [m]
+    const double *weight;     ///< w beta V_i V_j xi [m^7]
+    const double *correction; ///< of surfaces: times the stiffness against extension; 1 without
+    double *const *memory;    ///< in, and out of `advance`: numbers per bond, zero at first
+    double *point_memory;     ///< likewise: of the point
+    double step;              ///< of `advance`: since the last time [s]
+    double *tension;          ///< out of `pull`: dE/d extension per bond [N]
+    double *energy;           ///< out of `pull`: E [J]
+    double *spent;            ///< out of `advance`: what the step took, in heat [J]
+} pls_family_batch;
+
+/// A bond law: `linear`, alone or with `pull`, or `pair`, and what goes with it.
 typedef struct pls_bond_ops
 {
     uint32_t api_version; ///< PLS_API_VERSION
@@ -91,16 +117,60 @@ typedef struct pls_bond_ops
     const char *meaning;  ///< one line for the docs
     const pls_parameter *parameters;
     bool pairwise; ///< a bond knows itself alone: m is that of the fullest family of the set, whatever bonds its points have
-    /// Coefficients of a linear law. INVALID_ARGUMENT names a value the law cannot have (nu of bond-based laws).
+    /// Coefficients of a linear law; of a family law those of its first, stiffest response, for the stable step and the critical stretch. INVALID_ARGUMENT names a value the law cannot have (nu of
+    /// bond-based laws).
     pls_status (*linear)(const double *values, const pls_bond_setting *setting, pls_bond_coefficients *out);
 
-    /// Of a pair law: check what the table cannot and turn parameters and material into constants.
+    /// Of a family law and a pair law: check what the table cannot and turn parameters and material into constants.
     pls_status (*prepare)(const double *values, const pls_bond_setting *setting, double constants[PLS_BOND_MAX_CONSTANTS]);
-    /// The law itself.
+
+    /// Family laws: energy and tensions from extensions and memory. May be asked at any time, and says the same whenever these are the same.
+    void (*pull)(const pls_family_batch *batch);
+    /// Bring the memory to the extensions of now, once per step, before `pull`; null: there is none.
+    void (*advance)(const pls_family_batch *batch);
+    int memories;       ///< numbers per bond
+    int point_memories; ///< numbers per point
+
+    /// The law of a pair.
     void (*pair)(const pls_pair_batch *batch);
     /// Stiffness of a bond of this length [m].
     void (*stiffness)(const double *constants, double length, pls_pair_stiffness *out);
 } pls_bond_ops;
+
+/// Points of a set, about which its user is asked. All arrays hold `count` values.
+typedef struct pls_point_batch
+{
+    size_t count;
+    double time;               ///< [s]
+    const double *place[3];    ///< where they were when the bonds were made [m]
+    const double *chance;      ///< a number in (0, 1) that each body draws for itself, the same in every run with that seed
+    const double *temperature; ///< of sets with heat [K], else 0
+} pls_point_batch;
+
+/// How stiff points are and what they withstand, by the moduli of their material and by what the set's bonds withstand: both are to be set, > 0. A bond has the mean of its two points. Called from several
+/// threads at once.
+typedef pls_status pls_point_condition(void *context, const pls_point_batch *points, double *stiffness, double *toughness);
+/// A value per point: a temperature [K] or a source of heat [W/m^3]. Called from several threads at once.
+typedef pls_status pls_point_value(void *context, const pls_point_batch *points, double *values);
+
+/// Heat in a set of peridynamic bonds: conduction between points along bonds that hold, scaled so that k is the conductivity of a full family, and expansion by temperature. Temperatures are advanced with
+/// the bodies, to second order (Adams-Bashforth).
+typedef struct pls_heat_def
+{
+    double conductivity; ///< k >= 0 [W/(m K)]; NaN (default): the set has no temperatures
+    double capacity;     ///< of mass, c > 0 [J/(kg K)]
+    double expansion;    ///< linear [1/K]; default 0
+    double reference;    ///< temperature at which bonds are as long as they were made [K]; NaN (default): that of each point at the start
+    pls_point_value *initial; ///< temperature at the start; null: 0
+    pls_point_value *source;  ///< heat put in; null: none
+    pls_point_value *held;    ///< temperature that a point is kept at now, NaN: it is free; null: all are
+} pls_heat_def;
+
+/// What makes a bond break.
+typedef enum pls_fracture {
+    PLS_FRACTURE_STRETCH, ///< its stretch
+    PLS_FRACTURE_ENERGY ///< the energy that stretching it has stored, by its two volumes: 4 G/S, in 2D pi G/S, S = sum beta V_j xi of a full family (Foster et al. 2011: 4 G/(pi delta^4))
+} pls_fracture;
 
 /// A set of bonds. Copy `pls_default_bonds_def()` and change what you need.
 typedef struct pls_bonds_def
@@ -119,8 +189,15 @@ typedef struct pls_bonds_def
     pls_correction correction;
     pls_plane plane;
     double critical_stretch; ///< bonds longer by more than this part break and never heal; infinite (default): none do
-    double
-        fracture_energy; ///< G [J/m^2]: the critical stretch at which a plane that is torn apart takes so much (Silling and Askari 2005); NaN (default): not given
+    double fracture_energy;  ///< G [J/m^2]: a plane that is torn apart takes so much (Silling and Askari 2005); NaN (default): not given
+    pls_fracture fracture;   ///< what `fracture_energy` sets; for energies linear laws only
+    pls_point_condition *
+        condition; ///< null: 1 and 1. Toughness counts times the critical stretch, or energy, or the strengths of a pair law; stiffness not for pair laws
+    bool condition_changes;      ///< in time or with the temperature: it is asked in every step, else once
+    uint64_t seed;               ///< of `chance`
+    pls_heat_def heat;           ///< not of pair laws
+    void *user;                  ///< context of `condition` and of `heat`
+    void (*release)(void *user); ///< called once nobody needs it any more, also when the bonds cannot be made; may be null
     uint32_t cookie;
 } pls_bonds_def;
 
@@ -150,6 +227,8 @@ pls_status pls_world_bonds_figures(const struct pls_world *world, pls_bonds_id i
 pls_bonds_figures pls_world_all_bonds(const struct pls_world *world);
 /// Part of its bonds that a body has lost in a set: 0 whole, 1 none left; NaN when the body is no point of it.
 double pls_world_bonds_damage(const struct pls_world *world, pls_bonds_id id, pls_body_id body);
+/// Temperature of a body in a set [K]; NaN when it is no point of it or the set has no heat.
+double pls_world_bonds_temperature(const struct pls_world *world, pls_bonds_id id, pls_body_id body);
 /// Break the bonds of a set that cross a triangle (2D: a segment a-b) now: a crack there from the start. Returns in `cut` how many, of either direction.
 pls_status pls_world_cut_bonds(struct pls_world *world, pls_bonds_id id, pls_vec3 a, pls_vec3 b, pls_vec3 c, size_t *cut);
 

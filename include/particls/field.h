@@ -21,7 +21,8 @@ typedef enum pls_field_flags {
     PLS_FIELD_PERSISTS = 1, ///< lives from step to step: checkpointed and hashed
     PLS_FIELD_FRAME = 2,    ///< written to frames by default
     PLS_FIELD_ID = 4,       ///< the persistent number that orders rows
-    PLS_FIELD_BONDED = 8    ///< written to frames by default where there are bonds
+    PLS_FIELD_BONDED = 8,   ///< written to frames by default where there are bonds
+    PLS_FIELD_DERIVED = 16  ///< nobody keeps it: found when it is asked for
 } pls_field_flags;
 
 /// One field of one table. A value lies at row * stride + offset of its column.
@@ -45,6 +46,7 @@ typedef enum pls_table_kind {
     PLS_TABLE_NUMBERS, ///< numbers ever given to bodies, the free ones too
     PLS_TABLE_BONDS, ///< bonds of either direction: of each set the points in order of its reference configuration, their bonds in the same order
     PLS_TABLE_POINTS, ///< points of bonds in that order
+    PLS_TABLE_MEMORY, ///< what laws of bonds remember: of each set the bonds in that order, one memory after the other, then the points
     PLS_TABLE_COUNT
 } pls_table_kind;
 

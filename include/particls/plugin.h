@@ -1,11 +1,12 @@
 /// @file plugin.h
-/// The door for a user's shared object: contact laws, shapes, body forces and observers. It exports one function:
+/// The door for a user's shared object: contact laws, bond laws, shapes, body forces and observers. It exports one function:
 ///
 ///     pls_status particls_plugin(pls_plugin_host *host) { return host->add_law(host, &my_law_ops); }
 ///     const uint32_t particls_plugin_api = PLS_API_VERSION;
 #ifndef PARTICLS_PLUGIN_H
 #define PARTICLS_PLUGIN_H
 
+#include <particls/bond.h>
 #include <particls/force.h>
 #include <particls/law.h>
 #include <particls/observe.h>
@@ -23,6 +24,7 @@ struct pls_plugin_host
     pls_status (*add_shape)(pls_plugin_host *host, const pls_shape_ops *ops);
     pls_status (*add_force)(pls_plugin_host *host, const pls_force_ops *ops);
     pls_status (*add_observer)(pls_plugin_host *host, const pls_observer_ops *ops);
+    pls_status (*add_bond)(pls_plugin_host *host, const pls_bond_ops *ops);
 };
 
 typedef pls_status pls_plugin_function(pls_plugin_host *host);

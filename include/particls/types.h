@@ -17,7 +17,7 @@ extern "C" {
 #define PLS_VERSION_PATCH 0
 #define PLS_VERSION_TEXT  "0.1.0"
 /// Raised whenever an `ops` structure or what its functions may assume changes; plugins are checked against it.
-#define PLS_API_VERSION 4
+#define PLS_API_VERSION 5
 
 /// Names (shapes, materials, groups, states) are at most this long, terminator included.
 #define PLS_NAME_SIZE 64

@@ -42,7 +42,9 @@ typedef struct pls_world_def
     int coordination;      ///< contacts per body assumed by the estimate before they exist, 12 (2D: 6) by default
     double skin;           ///< Verlet skin [m]; 0: tunes itself. Never changes results
     bool reorder;          ///< keep bodies in memory along a space-filling curve, true by default. Never changes results
-    double max_overlap;    ///< stop when an overlap exceeds this fraction of the smaller radius, 1 by default
+    double local_damping;  ///< part of each force that works against the motion, 0 <= . < 1 (Cundall 1987); 0 by default
+    bool relaxation; ///< adaptive dynamic relaxation: velocities decay critically (Underwood 1983; Kilic and Madenci 2010); not by default
+    double max_overlap; ///< stop when an overlap exceeds this fraction of the smaller radius, 1 by default
     uint32_t cookie;
 } pls_world_def;
 

@@ -1,4 +1,4 @@
-// my_plugin.c -- a contact law, a shape, a body force and an observer of one's own; copy this file, delete what you do not need and change the rest.
+// my_plugin.c -- a contact law, a shape, a body force, an observer and a bond law of one's own; copy this file, delete what you do not need and change the rest.
 //
 //     cc $(particls plugin --cflags) -Wall -Wextra my_plugin.c -o my_plugin.so
 //     particls info my_plugin.so
@@ -13,6 +13,8 @@
 //       - {my_force: {stiffness: 20, centre: [0, 0, 1], bodies: pack}}
 //     observe:
 //       - {my_observer: {faster: 0.5}, every: 0.01}
+//     bonds:
+//       - {of: [plate], law: my_bond, horizon: 0.03, tension: 0.2}
 //
 // The program keeps everything, the functions nothing: they are called from several threads, and a run must go on after a restart as if it had never stopped.
 // So no global variables that change, no static ones within functions, no random numbers, no clock.
@@ -286,7 +288,73 @@ static const pls_observer_ops my_observer = {
     .look = observer_look,
 };
 
-// ---- 5. what the program looks for in the shared object --------------------------------------------------------------------------------
+// ---- 5. a bond law ---------------------------------------------------------------------------------------------------------------------
+//
+// As it stands, independent springs between points of a continuum that are softer where they are stretched: masonry, ice full of cracks.
+//
+//     E_i = V_i b / (2 m_i) sum w beta V_j s e^2,     s = tension where e > 0, else 1
+
+// 5.1 What the user may say beside `law: my_bond`; `horizon`, `influence`, `fracture_energy` and the like are the program's.
+static const pls_parameter bond_parameters[] = {
+    {.name = "tension",
+     .unit = "",
+     .meaning = "stiffness where stretched, by that where compressed",
+     .initial = 0.5,
+     .minimum = 0.0,
+     .maximum = 1.0,
+     .open_minimum = true},
+    {.name = NULL},
+};
+enum { EXTENSION, TENSION }; // 5.2 constants, at most PLS_BOND_MAX_CONSTANTS
+
+// 5.3 Coefficients of the law where it is stiffest: the stable step and the critical stretch follow from them. These are those of `bond_based`.
+static pls_status bond_linear(const double *values, const pls_bond_setting *setting, pls_bond_coefficients *out)
+{
+    (void)values;
+    const double E = setting->material.young_modulus, by_plane = setting->plane == PLS_PLANE_STRESS ? 3.0 : 3.2;
+    if (!(E > 0.0)) return pls_fail(PLS_INVALID_ARGUMENT, "my_bond: the material needs a young_modulus [Pa]");
+    *out = (pls_bond_coefficients){.dilation = 0.0, .extension = (setting->dimension == 3 ? 6.0 : by_plane) * E};
+    return PLS_OK;
+}
+
+// 5.4 From parameters and material to constants.
+static pls_status bond_prepare(const double *values, const pls_bond_setting *setting, double constants[PLS_BOND_MAX_CONSTANTS])
+{
+    pls_bond_coefficients law = {0.0, 0.0};
+    PLS_TRY(bond_linear(values, setting, &law));
+    constants[EXTENSION] = law.extension;
+    constants[TENSION] = values[0];
+    return PLS_OK;
+}
+
+// 5.5 The law: energy of a point's family and its derivatives by the extensions of its bonds. It is asked whenever forces or energies are; what it says must follow from extensions and memory alone.
+static void bond_pull(const pls_family_batch *batch)
+{
+    const double b = batch->constants[EXTENSION] / batch->weighted, tension = batch->constants[TENSION];
+    double energy = 0.0;
+    for (size_t k = 0; k < batch->count; ++k)
+    {
+        const double e = batch->extension[k],
+                     stiffness = b * batch->correction[k] * batch->weight[k] / batch->reference[k] * (e > 0.0 ? tension : 1.0);
+        batch->tension[k] = stiffness * e;
+        energy += 0.5 * stiffness * e * e;
+    }
+    *batch->energy = energy;
+}
+
+static const pls_bond_ops my_bond = {
+    .api_version = PLS_API_VERSION,
+    .name = "my_bond",
+    .meaning = "springs that are softer in tension, the bond law of the template",
+    .parameters = bond_parameters,
+    .linear = bond_linear,
+    .prepare = bond_prepare,
+    .pull = bond_pull,
+    // .memories, .advance   5.6 numbers kept per bond, and what brings them to the end of a step: flow, creep, fatigue
+    // .pair, .stiffness     in place of linear and pull: bonds that turn with two bodies, as beams
+};
+
+// ---- 6. what the program looks for in the shared object --------------------------------------------------------------------------------
 
 const uint32_t particls_plugin_api = PLS_API_VERSION;
 pls_status particls_plugin(pls_plugin_host *host);
@@ -295,5 +363,6 @@ pls_status particls_plugin(pls_plugin_host *host)
     PLS_TRY(host->add_law(host, &my_law));
     PLS_TRY(host->add_shape(host, &my_shape));
     PLS_TRY(host->add_force(host, &my_force));
+    PLS_TRY(host->add_bond(host, &my_bond));
     return host->add_observer(host, &my_observer);
 }

@@ -12,6 +12,7 @@ typedef enum pls_purpose {
     PLS_FOR_ORIENTATION = 3,
     PLS_FOR_VELOCITY = 4,
     PLS_FOR_SHAPE = 5,
+    PLS_FOR_TOUGHNESS = 6,
     PLS_FOR_USER = 64
 } pls_purpose;
 

@@ -19,6 +19,9 @@ void pls_bond_set_free(pls_bond_set *set)
     pls_release(&set->force);
     pls_release(&set->torque);
     pls_links_free(&set->links);
+    pls_force_states_free(&set->states);
+    pls_conditions_free(&set->conditions);
+    pls_release(&set->limit);
     pls_release(&set->overlong);
     pls_release(&set->number);
     pls_release(&set->point_of);
@@ -34,7 +37,8 @@ size_t pls_bond_set_bytes(const pls_bond_set *set)
                               ? slots * (sizeof *set->weight + sizeof *set->share) +
                                     f->count * (sizeof *set->dilation + sizeof *set->spread) + (f->count + f->ghosts) * sizeof *set->row
                               : 0;
-    return linear + pls_links_bytes(&set->links, f) + (set->torque ? f->count * sizeof *set->torque : 0) +
+    return linear + pls_links_bytes(&set->links, f) + pls_force_states_bytes(&set->states, f) + pls_conditions_bytes(&set->conditions, f) +
+           (set->limit ? slots * sizeof *set->limit : 0) + (set->torque ? f->count * sizeof *set->torque : 0) +
            slots * (sizeof *f->partner + sizeof *f->length) +
            f->count * (sizeof *f->point + sizeof *f->start + sizeof *f->size + sizeof *set->broken + sizeof *set->force +
                        sizeof *set->overlong + sizeof *set->number) +
@@ -65,6 +69,13 @@ static void unit_of(const pls_bond_set *set, const pls_domain *domain, size_t p,
     }
 }
 
+/// Of the partner's volume that counts.
+static double part_of(const pls_bond_set *set, size_t p, size_t slot)
+{
+    const pls_bond_point *a = &set->family.point[p], *b = &set->family.point[pls_point_behind(&set->family, set->family.partner[slot])];
+    return pls_partial_volume(set->family.length[slot], set->horizon, 0.5 * (a->spacing + b->spacing));
+}
+
 /// Weights of the bonds of all families.
 static pls_status weigh(pls_bond_set *set, const pls_bond_plan *plan, family_sums *sums)
 {
@@ -77,8 +88,7 @@ static pls_status weigh(pls_bond_set *set, const pls_bond_plan *plan, family_sum
         for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + f->size[p]; ++slot)
         {
             const pls_bond_point *b = &f->point[pls_point_behind(f, f->partner[slot])];
-            const double xi = f->length[slot], w = pls_influence_at(plan->def, xi);
-            const double part = pls_partial_volume(xi, set->horizon, 0.5 * (a->spacing + b->spacing));
+            const double xi = f->length[slot], w = pls_influence_at(plan->def, xi), part = part_of(set, p, slot);
             if (!(w >= 0.0) || !isfinite(w)) wrong = true;
             set->weight[slot] = w * part * (a->volume * b->volume) * xi;
             sums[p].weighted += w * part * b->volume * xi * xi;
@@ -222,6 +232,86 @@ static pls_status load_law(pls_bond_set *set, const pls_bond_plan *plan, const p
     return PLS_OK;
 }
 
+static pls_bond_end other_end(const pls_bond_set *set, pls_bond_end end);
+
+/// Of each bond d w beta V_i V_j (1/m_i + 1/m_j), times a conductivity what it conducts (condition.c).
+static pls_status make_conduction(const pls_bond_set *set, const pls_domain *domain, const family_sums *sums, double **conduction)
+{
+    const pls_families *f = &set->family;
+    PLS_TRY(pls_allocate(conduction, (size_t)f->start[f->count] * PLS_BOND_VECTOR, sizeof **conduction, "heat of bonds"));
+    for (size_t p = 0; p < f->count; ++p)
+        for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + f->size[p]; ++slot)
+        {
+            const size_t q = pls_point_behind(f, f->partner[slot]);
+            (*conduction)[slot] =
+                domain->dimension * set->weight[slot] / f->length[slot] * (1.0 / sums[p].weighted + 1.0 / sums[q].weighted);
+        }
+    return PLS_OK;
+}
+
+/// sum beta V_j xi of the family where it is largest.
+static double first_moment(const pls_bond_set *set)
+{
+    const pls_families *f = &set->family;
+    double largest = 0.0;
+    for (size_t p = 0; p < f->count; ++p)
+    {
+        double sum = 0.0;
+        for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + f->size[p]; ++slot)
+            sum += part_of(set, p, slot) * f->point[pls_point_behind(f, f->partner[slot])].volume * f->length[slot];
+        largest = fmax(largest, sum);
+    }
+    return largest;
+}
+
+/// The critical energy of each bond, as the loop of forces meets it: g pull e / (2 xi) by its two volumes.
+static pls_status make_limits(pls_bond_set *set, const pls_bond_plan *plan)
+{
+    const pls_families *f = &set->family;
+    if (!isfinite(plan->energy)) return PLS_OK;
+    PLS_TRY(pls_allocate(&set->limit, (size_t)f->start[f->count] * PLS_BOND_VECTOR, sizeof *set->limit, "bonds"));
+    const double critical = pls_critical_energy(set->dimension, first_moment(set), plan->energy);
+    for (size_t p = 0; p < f->count; ++p)
+        for (size_t slot = first_slot(set, p), end = (size_t)f->start[p + 1] * PLS_BOND_VECTOR, k = 0; slot < end; ++slot, ++k)
+        {
+            set->limit[slot] = INFINITY;
+            if (k >= f->size[p] || !(set->weight[slot] > 0.0)) continue;
+            const double volumes = f->point[p].volume * f->point[pls_point_behind(f, f->partner[slot])].volume;
+            set->limit[slot] = critical * part_of(set, p, slot) * volumes * f->length[slot] / set->weight[slot];
+        }
+    return PLS_OK;
+}
+
+/// A family law takes its weights from those of its first, linear response: what corrects a bond's stiffness is its share, compared with that of families that lack nothing.
+static pls_status make_states(pls_bond_set *set, const pls_bond_plan *plan, const family_sums *sums)
+{
+    const pls_families *f = &set->family;
+    pls_force_states *states = &set->states;
+    PLS_TRY(pls_force_states_make(states, plan->def->ops, f, plan->materials));
+    memcpy(states->constants, plan->constants, plan->materials * sizeof *states->constants);
+    for (size_t p = 0; p < f->count; ++p)
+    {
+        states->material[p] = plan->material[f->point[p].number];
+        states->weighted[p] = sums[p].weighted;
+    }
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < f->count; ++p)
+        for (size_t slot = first_slot(set, p), end = (size_t)f->start[p + 1] * PLS_BOND_VECTOR, k = 0; slot < end; ++slot, ++k)
+        {
+            const bool bond = k < f->size[p];
+            states->reference[slot] = bond ? f->length[slot] : set->horizon;
+            states->correction[slot] = 1.0;
+            if (!bond) continue;
+            const pls_bond_end other = other_end(set, (pls_bond_end){(uint32_t)p, slot});
+            states->back[slot] = (uint32_t)(other.slot - first_slot(set, other.point));
+            const double whole =
+                extension_of(set, plan, p) / sums[p].weighted + extension_of(set, plan, other.point) / sums[other.point].weighted;
+            if (plan->def->correction != PLS_CORRECTION_NONE && whole > 0.0)
+                states->correction[slot] = set->twice * (double)set->share[slot] / whole;
+        }
+    return PLS_OK;
+}
+
 static pls_status allocate(pls_bond_set *set)
 {
     const pls_families *f = &set->family;
@@ -256,12 +346,20 @@ static pls_status make_linear(pls_bond_set *set, const pls_bond_plan *plan, cons
     PLS_TRY(allocate_linear(set));
     pls_status status = pls_allocate(&sums, set->family.count, sizeof *sums, "points of bonds");
     if (status == PLS_OK) status = pls_allocate(&inverse, set->family.count, sizeof *inverse, "points of bonds");
+    double *conduction = NULL;
     if (status == PLS_OK) status = weigh(set, plan, sums);
+    if (status == PLS_OK && !isnan(plan->def->heat.conductivity)) status = make_conduction(set, domain, sums, &conduction);
     if (status == PLS_OK)
     {
         inverse_weights(set, plan, sums, inverse);
         status = load_law(set, plan, domain, sums, inverse);
     }
+    if (status == PLS_OK && plan->def->ops->pull) status = make_states(set, plan, sums);
+    if (status == PLS_OK) status = make_limits(set, plan);
+    if (status == PLS_OK)
+        status = pls_conditions_make(&set->conditions, plan->def, &set->family, conduction, plan->heat, plan->material, plan->time);
+    else
+        pls_release(&conduction);
     pls_release(&sums);
     pls_release(&inverse);
     return status;
@@ -270,16 +368,18 @@ static pls_status make_linear(pls_bond_set *set, const pls_bond_plan *plan, cons
 static pls_status make_links(pls_bond_set *set, const pls_bond_plan *plan, const pls_bodies *bodies, const pls_domain *domain)
 {
     set->links.ops = plan->def->ops;
-    memcpy(set->links.constants, plan->constants, sizeof set->links.constants);
+    memcpy(set->links.constants, plan->constants[plan->some_material], sizeof set->links.constants);
     PLS_TRY(pls_allocate(&set->torque, set->family.count, sizeof *set->torque, "points of bonds"));
-    return pls_links_make(&set->links, &set->family, bodies, domain);
+    PLS_TRY(pls_links_make(&set->links, &set->family, bodies, domain));
+    return pls_conditions_make(&set->conditions, plan->def, &set->family, NULL, plan->heat, plan->material, plan->time);
 }
 
 pls_status pls_bond_set_make(pls_bond_set *set, const pls_bond_plan *plan, pls_bond_point *point, size_t count, const pls_bodies *bodies,
                              const pls_domain *domain)
 {
-    *set = (pls_bond_set){.horizon = plan->def->horizon, .stretch = plan->stretch};
+    *set = (pls_bond_set){.horizon = plan->def->horizon, .stretch = plan->stretch, .dimension = domain->dimension};
     memcpy(set->name, plan->def->name, sizeof set->name);
+    set->conditions = (pls_conditions){.user = plan->def->user, .release = plan->def->release}; // whatever fails
     pls_status status = pls_families_make(&set->family, point, count, plan->def->horizon, domain);
     if (status == PLS_OK) status = allocate(set);
     if (status == PLS_OK) status = plan->def->ops->pair ? make_links(set, plan, bodies, domain) : make_linear(set, plan, domain);
@@ -354,6 +454,68 @@ static double length_of(const pls_bond_set *set, size_t point, size_t slot)
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
+/// Means of a bond's two points.
+static double mean_of(const pls_bond_set *set, size_t point, size_t slot, int column)
+{
+    const double(*row)[PLS_CONDITION_NUMBERS] = (const double(*)[PLS_CONDITION_NUMBERS])set->conditions.row;
+    if (!row) return column == PLS_CONDITION_STRAIN ? 0.0 : 1.0;
+    return 0.5 * (row[set->family.partner[slot]][column] + row[point][column]);
+}
+
+static double own_stiffness(const pls_bond_set *set, size_t point)
+{
+    return set->conditions.row ? set->conditions.row[point][PLS_CONDITION_STIFFNESS] : 1.0;
+}
+
+/// What a bond is longer by than its reference length and temperature make it.
+static double extension_now(const pls_bond_set *set, size_t point, size_t slot)
+{
+    const double xi = fabs(set->family.length[slot]);
+    return length_of(set, point, slot) - xi - xi * mean_of(set, point, slot, PLS_CONDITION_STRAIN);
+}
+
+/// What the law of a point is asked with. `memory`: of as many pointers.
+static pls_family_batch batch_of(const pls_bond_set *set, size_t p, double step, double *memory[PLS_BOND_MAX_MEMORY], double *energy,
+                                 double *spent)
+{
+    const pls_families *f = &set->family;
+    const pls_force_states *states = &set->states;
+    const size_t first = first_slot(set, p);
+    for (int k = 0; k < states->ops->memories; ++k) memory[k] = states->memory[k] + first;
+    return (pls_family_batch){.count = (size_t)(f->start[p + 1] - f->start[p]) * PLS_BOND_VECTOR,
+                              .dimension = set->dimension,
+                              .constants = states->constants[states->material[p]],
+                              .volume = f->point[p].volume,
+                              .weighted = states->weighted[p],
+                              .reference = states->reference + first,
+                              .extension = states->extension + first,
+                              .weight = set->weight + first,
+                              .correction = states->correction + first,
+                              .memory = memory,
+                              .point_memory = states->of_point[p],
+                              .step = step,
+                              .tension = states->tension + first,
+                              .energy = energy,
+                              .spent = spent};
+}
+
+void pls_bond_ask_states(pls_bond_set *set, size_t first, size_t last, double dt)
+{
+    for (size_t p = first; p < last; ++p)
+    {
+        double *memory[PLS_BOND_MAX_MEMORY], energy = 0.0;
+        set->states.spent[p] = 0.0;
+        PLS_SIMD_SELECT(pls_states_stretch)(set, p);
+        const pls_family_batch batch = batch_of(set, p, dt, memory, &energy, &set->states.spent[p]);
+        if (dt > 0.0 && set->states.ops->advance) set->states.ops->advance(&batch);
+        set->states.ops->pull(&batch);
+        if (!set->conditions.row) continue;
+        const double stiffness = own_stiffness(set, p);
+        set->states.spent[p] *= stiffness;
+        for (size_t k = 0; k < batch.count; ++k) batch.tension[k] *= stiffness;
+    }
+}
+
 /// Do something with a family of links as they are now, a batch at a time. `slot`: of the first of `count` bonds.
 typedef void link_action(const pls_link_work *work, size_t slot, size_t count, void *context);
 
@@ -387,15 +549,24 @@ double pls_bond_energy(const pls_bond_set *set, size_t point)
         each_batch(set, point, add_energy, &sum);
         return sum;
     }
+    if (set->states.ops)
+    {
+        double *memory[PLS_BOND_MAX_MEMORY], energy = 0.0, spent = 0.0;
+        PLS_SIMD_SELECT(pls_states_stretch)(set, point); // scratch of this point alone
+        const pls_family_batch batch = batch_of(set, point, 0.0, memory, &energy, &spent);
+        set->states.ops->pull(&batch);
+        return own_stiffness(set, point) * energy;
+    }
     double spread = 0.0, stretched = 0.0;
     for (size_t slot = first_slot(set, point); slot < first_slot(set, point) + set->family.size[point]; ++slot)
     {
         if (!pls_bond_is_whole(set, slot)) continue;
-        const double xi = fabs(set->family.length[slot]), e = length_of(set, point, slot) - xi;
+        const double xi = fabs(set->family.length[slot]), e = extension_now(set, point, slot);
         spread += set->weight[slot] * e;
-        stretched += set->weight[slot] * set->twice * (double)set->share[slot] * e * e / xi;
+        stretched +=
+            set->weight[slot] * set->twice * (double)set->share[slot] * mean_of(set, point, slot, PLS_CONDITION_STIFFNESS) * e * e / xi;
     }
-    return 0.5 * set->dilation[point] * spread * spread + 0.25 * stretched;
+    return 0.5 * own_stiffness(set, point) * set->dilation[point] * spread * spread + 0.25 * stretched;
 }
 
 /// The first slot of a family whose partner is point q or a later one: families are in order of points.
@@ -431,6 +602,13 @@ static pls_bond_end other_end(const pls_bond_set *set, pls_bond_end end)
     return end; // not reached: families are symmetric
 }
 
+static void forget(pls_bond_set *set, size_t slot)
+{
+    set->family.length[slot] = PLS_NO_LENGTH;
+    if (set->weight) set->weight[slot] = 0.0;
+    if (set->conditions.conduction) set->conditions.conduction[slot] = 0.0;
+}
+
 bool pls_bond_break(pls_bond_set *set, pls_bond_end end)
 {
     if (!pls_bond_is_whole(set, end.slot)) return false;
@@ -439,12 +617,21 @@ bool pls_bond_break(pls_bond_set *set, pls_bond_end end)
     {
         const size_t slot = both[k].slot, p = both[k].point;
         const double held = pls_bond_energy(set, p);
-        set->family.length[slot] = PLS_NO_LENGTH;
-        if (set->weight) set->weight[slot] = 0.0;
+        forget(set, slot);
         set->broken[p] += held - pls_bond_energy(set, p);
         ++set->gone;
     }
     return true;
+}
+
+/// Whether a linear or family law's bond breaks, as the loops of forces see it.
+static bool is_overlong(const pls_bond_set *set, size_t p, size_t slot)
+{
+    const double xi = set->family.length[slot], e = extension_now(set, p, slot), toughness = mean_of(set, p, slot, PLS_CONDITION_TOUGHNESS);
+    if (!set->limit) return set->stretch * toughness * xi < e;
+    const double share = (double)set->share[slot] * mean_of(set, p, slot, PLS_CONDITION_STIFFNESS);
+    const double pull = (set->row[p][3] + set->row[set->family.partner[slot]][3]) * xi + (set->twice * e) * share;
+    return toughness * set->limit[slot] < 0.5 * pull * e && e > 0.0;
 }
 
 /// Bonds that carry as much as they can.
@@ -463,7 +650,7 @@ static void mark_overlong(pls_bond_set *set, size_t p)
     for (size_t slot = first_slot(set, p); slot < first_slot(set, p) + set->family.size[p]; ++slot)
     {
         const double xi = set->family.length[slot];
-        if (xi > 0.0 && set->stretch * xi < length_of(set, p, slot) - xi) set->family.length[slot] = -xi;
+        if (xi > 0.0 && is_overlong(set, p, slot)) set->family.length[slot] = -xi;
     }
 }
 
@@ -508,6 +695,25 @@ void pls_bond_read_broken(const pls_bond_set *set, uint8_t *broken)
         for (size_t slot = first_slot(set, p), k = 0; k < set->family.size[p]; ++k) *broken++ = !pls_bond_is_whole(set, slot + k);
 }
 
+/// Of heat, doubles.
+static size_t warm_numbers(const pls_bond_set *set) { return set->conditions.warmth ? set->family.count * PLS_HEAT_NUMBERS : 0; }
+
+size_t pls_bond_remembered(const pls_bond_set *set) { return pls_force_states_remembered(&set->states, &set->family) + warm_numbers(set); }
+
+void pls_bond_read_memory(const pls_bond_set *set, double *out)
+{
+    pls_force_states_read(&set->states, &set->family, out);
+    if (warm_numbers(set) > 0)
+        memcpy(out + pls_force_states_remembered(&set->states, &set->family), set->conditions.warmth, warm_numbers(set) * sizeof *out);
+}
+
+void pls_bond_write_memory(pls_bond_set *set, const double *in)
+{
+    pls_force_states_write(&set->states, &set->family, in);
+    if (warm_numbers(set) > 0)
+        memcpy(set->conditions.warmth, in + pls_force_states_remembered(&set->states, &set->family), warm_numbers(set) * sizeof *in);
+}
+
 static bool is_there(const pls_bond_point *point, const pls_bodies *bodies)
 {
     return point->number < bodies->numbers && bodies->row_of[point->number] != PLS_NO_ROW &&
@@ -548,8 +754,7 @@ pls_status pls_bond_write_broken(pls_bond_set *set, const uint8_t *broken)
         {
             if (*broken && pls_bond_is_whole(set, slot + k))
             {
-                set->family.length[slot + k] = PLS_NO_LENGTH;
-                if (set->weight) set->weight[slot + k] = 0.0;
+                forget(set, slot + k);
                 ++set->gone;
             }
             else if (!*broken && !pls_bond_is_whole(set, slot + k))

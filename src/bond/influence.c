@@ -44,3 +44,9 @@ double pls_critical_stretch(const pls_bonds_def *def, int dimension, double bulk
     const double per_square = dimension == 3 ? 9.0 * bulk * pi * moment(def, 5) / m : 8.0 * bulk * moment(def, 4) / m;
     return sqrt(fracture_energy / per_square);
 }
+
+double pls_critical_energy(int dimension, double first_moment, double fracture_energy)
+{
+    // Bonds of length xi across a plane, per area: a quarter (in 2D 1/pi) of V_j xi from either side together, each with the same energy by its volumes.
+    return (dimension == 3 ? 4.0 : pi) * fracture_energy / first_moment;
+}

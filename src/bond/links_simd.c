@@ -51,6 +51,15 @@ static inline __attribute__((always_inline)) void look(const pls_bond_set *set, 
     }
 }
 
+/// Tougher bonds carry less of what they can.
+static void toughen(const pls_bond_set *set, size_t own, size_t slot, size_t k, pls_link_work *work)
+{
+    const double(*rows)[PLS_CONDITION_NUMBERS] = (const double(*)[PLS_CONDITION_NUMBERS])set->conditions.row;
+    for (size_t lane = 0; rows && lane < PLS_BOND_VECTOR; ++lane)
+        work->load[k + lane] /=
+            0.5 * (rows[own][PLS_CONDITION_TOUGHNESS] + rows[set->family.partner[slot + lane]][PLS_CONDITION_TOUGHNESS]);
+}
+
 void PLS_SIMD(pls_link_family)(const pls_bond_set *set, size_t point, size_t vector, size_t vectors, pls_link_work *work)
 {
     for (size_t v = 0; v < vectors; ++v)
@@ -58,6 +67,7 @@ void PLS_SIMD(pls_link_family)(const pls_bond_set *set, size_t point, size_t vec
         for (size_t part = 0; part < PARTS; ++part)
             look(set, point, (vector + v) * PLS_BOND_VECTOR + part * PLS_W, v * PLS_BOND_VECTOR + part * PLS_W, work);
     pls_links_ask(&set->links, vectors * PLS_BOND_VECTOR, work);
+    for (size_t v = 0; v < vectors; ++v) toughen(set, point, (vector + v) * PLS_BOND_VECTOR, v * PLS_BOND_VECTOR, work);
 }
 
 /// Sums of a point while its family is passed.
@@ -106,6 +116,7 @@ bool PLS_SIMD(pls_link_act)(pls_bond_set *set, size_t first, size_t last)
         pls_links_ask(&set->links, (end - begin) * PLS_BOND_VECTOR, &work);
         for (; vector < end; ++vector)
         {
+            toughen(set, p, vector * PLS_BOND_VECTOR, (vector - begin) * PLS_BOND_VECTOR, &work);
             add(&work, (vector - begin) * PLS_BOND_VECTOR, set->stretch, &s);
             if (vector + 1 < start[p + 1]) continue;
             for (int c = 0; c < 3; ++c) set->force[p][c] = pls_lanes_sum(s.part[c]), set->torque[p][c] = pls_lanes_sum(s.part[3 + c]);

@@ -29,6 +29,8 @@ static pls_status create_world(pls_builder *b)
     def.dt = pls_scene_number(time, "dt", 0.0);
     def.safety = pls_scene_number(time, "safety", def.safety);
     def.allow_unstable = pls_scene_boolean(time, "allow_unstable", false);
+    def.local_damping = pls_scene_number(time, "local_damping", 0.0);
+    def.relaxation = strcmp(pls_scene_string(time, "relaxation", "none"), "adaptive") == 0;
     def.coordination = (int)pls_scene_number(time, "coordination", def.coordination);
     const pls_node *neighbours = pls_node_get(root, "neighbours");
     def.skin = pls_scene_number(neighbours, "skin", 0.0);

@@ -25,11 +25,17 @@ typedef struct pls_builder
 
 /// build_bodies.c
 pls_status pls_build_bodies(pls_builder *b);
+/// Density of an entry's material at the start [kg/m^3]; NaN: not given.
+pls_status pls_build_density(const pls_builder *b, size_t entry, double *density);
 /// Body of a state: the index within its entry, checked.
 pls_status pls_build_state_body(const pls_builder *b, const pls_scene_state *state, size_t copy, size_t *index);
 
 /// build_bonds.c
 pls_status pls_build_bonds(const pls_builder *b);
+/// build_forces.c
+pls_status pls_build_forces(const pls_builder *b);
+/// build_points.c: what an entry of bonds says of its points by expressions. The definition's user is the world's from pls_world_add_bonds on.
+pls_status pls_build_points(const pls_builder *b, const pls_node *bonds, pls_bonds_def *def);
 
 /// build_formulas.c: functions of time, place and states for the world to call, and their contexts.
 /// Value of a node over t and states at t = 0 (a plain number is itself), checked against the range of `key`.
@@ -48,7 +54,6 @@ pls_status pls_build_initial_values(const pls_builder *b, const pls_parameter *t
 /// The motion of an entry's bodies over time. One formula serves all bodies of the entry, each body has its own context.
 pls_status pls_build_motion_formula(const pls_builder *b, const pls_node *motion, pls_formula **formula);
 pls_status pls_build_motion_context(const pls_builder *b, const pls_node *motion, pls_formula *formula, pls_motion_def *def);
-pls_status pls_build_forces(const pls_builder *b);
 pls_status pls_build_states(const pls_builder *b);
 
 /// The text of the k-th component of a vector (or of a scalar, k = 0) for a formula: numbers are written into `number`, words and missing

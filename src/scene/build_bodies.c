@@ -159,15 +159,20 @@ static pls_status add_body(pls_builder *b, const entry_plan *plan, const pls_poi
     return pls_world_add_body(b->world, &def, id);
 }
 
-static pls_status plan_density(const pls_builder *b, entry_plan *plan)
+pls_status pls_build_density(const pls_builder *b, size_t entry, double *density)
 {
     size_t count;
     const pls_key *key = pls_schema_keys("material", &count);
     while (strcmp(key->name, "density") != 0) ++key;
-    const pls_node *node = pls_node_get(b->scene->materials[plan->body->material].node, key->name);
-    plan->density = NAN;
-    if (!node) return PLS_OK;
-    PLS_TRY(pls_build_initial_value(b, key, node, &plan->density));
+    const pls_node *node = pls_node_get(b->scene->materials[b->scene->bodies[entry].material].node, key->name);
+    *density = NAN;
+    return node ? pls_build_initial_value(b, key, node, density) : PLS_OK;
+}
+
+/// Per area in 2D.
+static pls_status plan_density(const pls_builder *b, entry_plan *plan)
+{
+    PLS_TRY(pls_build_density(b, (size_t)(plan->body - b->scene->bodies), &plan->density));
     if (b->scene->dimension == 2) plan->density *= b->scene->thickness;
     return PLS_OK;
 }

@@ -136,6 +136,8 @@ static pls_status add(const pls_builder *b, const pls_scene_bonds *bonds, pls_gr
     def.fracture_energy = pls_scene_number(node, "fracture_energy", NAN);
     take_spacing(pls_node_get(node, "spacing"), &def);
     PLS_TRY(take_influence(b, pls_node_get(node, "influence"), f, &def));
+    if (strcmp(pls_scene_string(node, "criterion", "stretch"), "energy") == 0) def.fracture = PLS_FRACTURE_ENERGY;
+    PLS_TRY(pls_build_points(b, node, &def));
     pls_bonds_id id;
     PLS_TRY(pls_node_context(pls_world_add_bonds(b->world, &def, &id), node, "%s", "")); // the message names the bonds
     return cut_cracks(b, id, pls_node_get(node, "cracks"));

@@ -256,6 +256,13 @@ static const char *describe_code(int code)
     }
 }
 
+static bool is_variable(const pls_symbols *symbols, const char *name)
+{
+    for (size_t k = 0; k < symbols->variable_count; ++k)
+        if (strcmp(symbols->variables[k], name) == 0) return true;
+    return false;
+}
+
 static void define_symbols(pls_expression *expression, const pls_symbols *symbols)
 {
     muParserHandle_t parser = expression->parser;
@@ -263,7 +270,9 @@ static void define_symbols(pls_expression *expression, const pls_symbols *symbol
     mupDefineConst(parser, "e", EULER);
     mupDefineFun1(parser, "floor", floor, 1);
     mupDefineFun1(parser, "ceil", ceil, 1);
-    for (size_t k = 0; k < symbols->constant_count; ++k) mupDefineConst(parser, symbols->constants[k].name, symbols->constants[k].value);
+    for (size_t k = 0; k < symbols->constant_count; ++k) // a variable hides a constant of its name
+        if (!is_variable(symbols, symbols->constants[k].name))
+            mupDefineConst(parser, symbols->constants[k].name, symbols->constants[k].value);
     for (size_t k = 0; k < symbols->variable_count; ++k) mupDefineVar(parser, symbols->variables[k], &expression->values[k]);
 }
 

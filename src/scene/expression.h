@@ -62,6 +62,8 @@ typedef struct pls_formula pls_formula;
 /// `texts` are copied; a null text is the number 0. The formula begins with one reference.
 pls_status pls_formula_make(const char *const *texts, size_t count, const pls_symbols *symbols, pls_formula **formula);
 pls_formula *pls_formula_share(pls_formula *formula);
+/// Whether one of the expressions mentions variable k.
+bool pls_formula_uses(pls_formula *formula, size_t k);
 /// Drop one reference; the last one frees.
 void pls_formula_drop(pls_formula *formula);
 

@@ -134,6 +134,16 @@ void pls_formula_drop(pls_formula *formula)
     if (last) free_formula(formula);
 }
 
+bool pls_formula_uses(pls_formula *formula, size_t k)
+{
+    pls_formula_copy *copy;
+    if (pls_formula_begin(formula, &copy) != PLS_OK) return true;
+    bool used = false;
+    for (size_t n = 0; n < formula->count; ++n) used = used || (copy->expression[n] && pls_expression_uses(copy->expression[n], k));
+    pls_formula_end(formula, copy);
+    return used;
+}
+
 static pls_status compile_copy(pls_formula *formula, pls_formula_copy *copy)
 {
     PLS_TRY(pls_allocate(&copy->expression, formula->count, sizeof(pls_expression *), "compiled expressions"));

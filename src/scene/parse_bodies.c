@@ -246,8 +246,16 @@ pls_status pls_scene_parse_forces(pls_scene *scene)
         if (map)
         {
             PLS_TRY(exclude(map, "force", "acceleration"));
-            if (!pls_node_get(map, "force") && !pls_node_get(map, "acceleration"))
-                return pls_node_fail(map, "give one of them", "the field has neither 'force' nor 'acceleration'");
+            PLS_TRY(exclude(map, "force", "density"));
+            PLS_TRY(exclude(map, "acceleration", "density"));
+            if (!pls_node_get(map, "force") && !pls_node_get(map, "acceleration") && !pls_node_get(map, "density"))
+                return pls_node_fail(map, "give one of them", "the field has neither 'force' nor 'acceleration' nor 'density'");
+        }
+        else if ((map = pls_node_get(list->child[k], "traction")) || (map = pls_node_get(list->child[k], "pressure")))
+        {
+            const pls_node *normal = pls_node_get(map, "normal");
+            if (normal && !(pls_length(pls_scene_vector(map, "normal")) > 0.0))
+                return pls_node_fail(normal, NULL, "'normal' must not be zero");
         }
         else if (!pls_scene_named_operations(&scene->force_ops, list->child[k], &map))
             continue;

@@ -13,7 +13,7 @@ static pls_status check_moduli(const pls_scene *scene, int entry)
     {
         const pls_node *node = pls_node_get(material->node, moduli[k]);
         if (node && node->formula)
-            return pls_node_fail(node, "give a number, or the body a material of its own",
+            return pls_node_fail(node, "give a number; `stiffness` of bonds may change in time",
                                  "'%s' of material '%s' changes in time, which bonds of its bodies do not follow", moduli[k],
                                  material->name);
     }
@@ -117,6 +117,9 @@ static pls_status parse_bonds(pls_scene *scene, const pls_node *node, size_t k)
     PLS_TRY(parse_of(scene, bonds));
     if (pls_node_get(node, "critical_stretch") && pls_node_get(node, "fracture_energy"))
         return pls_node_fail(pls_node_key(node, "fracture_energy"), NULL, "'critical_stretch' and 'fracture_energy' exclude each other");
+    if (strcmp(pls_scene_string(node, "criterion", "stretch"), "energy") == 0 && !pls_node_get(node, "fracture_energy"))
+        return pls_node_fail(pls_node_key(node, "criterion"), "give fracture_energy [J/m^2]",
+                             "the criterion 'energy' needs 'fracture_energy'");
     const pls_node *cracks = pls_node_get(node, "cracks");
     for (size_t c = 0; cracks && c < cracks->count; ++c) PLS_TRY(check_crack(scene, cracks->child[c]));
     ++scene->bonds_count;

@@ -1,10 +1,11 @@
-// plugin.c -- shapes, laws, forces and observers by name: the built-in ones, then those of the scene's shared objects, all through the same door.
+// plugin.c -- shapes, laws, bonds, forces and observers by name: the built-in ones, then those of the scene's shared objects, all through the same door.
 //
 // What comes through the door is looked at before anything is built from it, so that a plugin that is no good is refused where the scene names it.
 // A plugin stays loaded as long as its scene: the world uses its functions, so the world must be destroyed before the scene is freed.
 
 #include "scene/scene_data.h"
 
+#include "bond/builtin.h"
 #include "observe/series.h"
 #include "scene/schema.h"
 
@@ -101,7 +102,7 @@ static pls_status check_entry(const char *what, const char *name, const pls_para
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------------------
-// the four doors
+// the five doors
 
 static pls_status add_law(pls_plugin_host *door, const pls_law_ops *ops)
 {
@@ -146,11 +147,24 @@ static pls_status add_observer(pls_plugin_host *door, const pls_observer_ops *op
     return pls_registry_add(&scene->observer_ops, ops->name, ops);
 }
 
+static pls_status add_bond(pls_plugin_host *door, const pls_bond_ops *ops)
+{
+    pls_scene *scene = ((host *)door)->scene;
+    if (!ops) return pls_fail(PLS_PLUGIN, "add_bond was called with null");
+    PLS_TRY(check_ops(ops->api_version, ops->name, ops->parameters, "bond law", "bond"));
+    PLS_TRY(pls_bond_ops_check(ops));
+    return pls_registry_add(&scene->bond_ops, ops->name, ops);
+}
+
 static host open_door(pls_scene *scene)
 {
-    return (host){
-        {.api_version = PLS_API_VERSION, .add_law = add_law, .add_shape = add_shape, .add_force = add_force, .add_observer = add_observer},
-        scene};
+    return (host){{.api_version = PLS_API_VERSION,
+                   .add_law = add_law,
+                   .add_shape = add_shape,
+                   .add_force = add_force,
+                   .add_observer = add_observer,
+                   .add_bond = add_bond},
+                  scene};
 }
 
 pls_status pls_scene_load_builtins(pls_scene *scene)
@@ -163,7 +177,7 @@ pls_status pls_scene_load_builtins(pls_scene *scene)
     host door = open_door(scene);
     for (const pls_shape_ops *const *ops = pls_builtin_shapes(); *ops; ++ops) PLS_TRY(add_shape(&door.host, *ops));
     for (const pls_law_ops *const *ops = pls_builtin_laws(); *ops; ++ops) PLS_TRY(add_law(&door.host, *ops));
-    for (const pls_bond_ops *const *ops = pls_builtin_bonds(); *ops; ++ops) PLS_TRY(pls_registry_add(&scene->bond_ops, (*ops)->name, *ops));
+    for (const pls_bond_ops *const *ops = pls_builtin_bonds(); *ops; ++ops) PLS_TRY(add_bond(&door.host, *ops));
     return PLS_OK;
 }
 

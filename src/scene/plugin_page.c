@@ -16,8 +16,8 @@ static pls_status page_columns(pls_text *out, const pls_observer_ops *ops)
     return pls_text_print(out, "\n");
 }
 
-/// What the plugin added to the scene's registries, which held `laws` and `shapes` before.
-static pls_status write_page(const pls_scene *scene, size_t laws, size_t shapes, pls_text *out)
+/// What the plugin added to the scene's registries, which held `laws`, `bonds` and `shapes` before.
+static pls_status write_page(const pls_scene *scene, size_t laws, size_t bonds, size_t shapes, pls_text *out)
 {
     if (scene->law_ops.count > laws)
         PLS_TRY(pls_text_print(out, "## Contact laws\n\n`contact: [{between: [a, b], law: LAW, parameters}]`\n\n"));
@@ -25,6 +25,13 @@ static pls_status write_page(const pls_scene *scene, size_t laws, size_t shapes,
     {
         const pls_law_ops *ops = scene->law_ops.entry[k].ops;
         PLS_TRY(pls_page_parameters(out, ops->name, ops->meaning, ops->parameters, PLS_OF_LAW));
+    }
+    if (scene->bond_ops.count > bonds)
+        PLS_TRY(pls_text_print(out, "## Bond laws\n\n`bonds: [{of: [ENTRY], law: LAW, horizon: ..., parameters}]`\n\n"));
+    for (size_t k = bonds; k < scene->bond_ops.count; ++k)
+    {
+        const pls_bond_ops *ops = scene->bond_ops.entry[k].ops;
+        PLS_TRY(pls_page_parameters(out, ops->name, ops->meaning, ops->parameters, PLS_OF_BOND));
     }
     if (scene->shape_ops.count > shapes) PLS_TRY(pls_text_print(out, "## Shapes\n\n`shapes: {NAME: {SHAPE: {parameters}}}`\n\n"));
     for (size_t k = shapes; k < scene->shape_ops.count; ++k)
@@ -56,10 +63,10 @@ static pls_status describe(pls_scene *scene, const char *path, pls_text *out)
     pls_node node = {.kind = PLS_NODE_SCALAR, .source = &no_source, .text = path};
     if (!strchr(path, '/')) PLS_TRY(pls_arena_print(&scene->arena, &node.text, "./%s", path));
     PLS_TRY(pls_scene_load_builtins(scene));
-    size_t laws = scene->law_ops.count, shapes = scene->shape_ops.count;
+    const size_t laws = scene->law_ops.count, bonds = scene->bond_ops.count, shapes = scene->shape_ops.count;
     PLS_TRY(pls_scene_load_plugin(scene, &node));
     PLS_TRY(pls_text_print(out, "# %s\n\nVersion %d of the plugin interface.\n\n", path, PLS_API_VERSION));
-    return write_page(scene, laws, shapes, out);
+    return write_page(scene, laws, bonds, shapes, out);
 }
 
 pls_status pls_plugin_reference(const char *path, char **text)

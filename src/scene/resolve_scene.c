@@ -19,6 +19,8 @@ pls_status pls_scene_symbols(const pls_scene *scene, unsigned uses, const char *
     if (uses & PLS_USES_MASS) names[count++] = "m";
     if (uses & PLS_USES_OWN) names[count++] = "s";
     if (uses & PLS_USES_OWN && own) names[count++] = own;
+    if (uses & PLS_USES_CHANCE) names[count++] = "chance";
+    if (uses & PLS_USES_TEMPERATURE) names[count++] = "temperature";
     for (size_t k = 0; uses & PLS_USES_STATES && k < scene->state_count; ++k)
     {
         if (!scene->state_names[k]) continue;
@@ -309,7 +311,7 @@ static const pls_parameter *bond_parameters(const void *ops) { return ((const pl
 /// Bonds that know nothing of each other weigh nothing.
 static const char *no_families(const void *ops)
 {
-    return ((const pls_bond_ops *)ops)->pair ? "influence|spacing|correction|plane|fracture_energy" : NULL;
+    return ((const pls_bond_ops *)ops)->pair ? "influence|spacing|correction|plane|fracture_energy|criterion|stiffness|heat" : NULL;
 }
 
 pls_status pls_resolve_bond(pls_resolver *r, pls_node *entry, const char *label)

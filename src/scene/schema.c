@@ -57,13 +57,24 @@ static const pls_section sections[] = {
      "within the horizon; volumes are masses by the densities of "
      "materials. Beams join bodies within the horizon and turn with them. Moduli are those of materials. Bodies do not touch while a bond "
      "holds them. What makes families of bonds (`influence`, "
-     "`spacing`, `correction`, `plane`, `fracture_energy`) has no place in entries of beams. The parameters of the law stand beside "
+     "`spacing`, `correction`, `plane`, `fracture_energy`, `criterion`), `stiffness` and `heat` have no place in entries of beams. The "
+     "parameters of the law stand beside "
      "`law`."},
     {"crack", "bonds[k].cracks[k]", "A crack that is there from the start: bonds that cross it are broken."},
+    {"heat", "bonds[k].heat",
+     "Temperature of the points, in kelvin or from wherever is convenient: it flows along bonds that hold, not across cracks, and "
+     "stretches them. What it does to `stiffness` and `toughness` is said there."},
+    {"held", "bonds[k].heat.held[k]", "Points whose temperature is given. Of several that hold a point the last one counts."},
     {"gravity", "forces[k]", "Uniform gravity."},
     {"field_force", "forces[k]", "A field of forces given by expressions."},
     {"field", "forces[k].field",
-     "Force or acceleration as a function of place, time and the body's own motion. Exactly one of `force` and `acceleration`."},
+     "Force as a function of place, time and the body's own motion. Exactly one of `force`, `acceleration` and `density`."},
+    {"traction_force", "forces[k]", "A force per area on the bodies of a face."},
+    {"traction", "forces[k].traction",
+     "A force per area. The bodies that `where` chooses at the start share value times area by their masses: of a continuum a layer of its "
+     "points."},
+    {"pressure_force", "forces[k]", "A pressure on the bodies of a face."},
+    {"pressure", "forces[k].pressure", "As a traction, against the outward normal of the face, which does not turn with it."},
     {"force_plugin", "forces[k]", "A body force of a plugin. What it takes is said by `particls info PLUGIN.so`."},
     {"plugin", "forces[k].NAME, observe[k].NAME", "What stands beside the parameters of a plugin's force or observer."},
     {"state", "states[k]",
@@ -87,10 +98,28 @@ static const pls_section sections[] = {
 #define TIMELY   (PLS_USES_TIME | PLS_USES_STATES)
 #define FIELD    (PLS_USES_TIME | PLS_USES_PLACE | PLS_USES_VELOCITY | PLS_USES_RADIUS | PLS_USES_MASS)
 #define RATE     (PLS_USES_TIME | PLS_USES_PLACE | PLS_USES_VELOCITY | PLS_USES_RADIUS | PLS_USES_OWN | PLS_USES_STATES)
+#define OF_POINT (PLS_USES_TIME | PLS_USES_PLACE | PLS_USES_CHANCE | PLS_USES_TEMPERATURE)
 #define ANY      -INFINITY, INFINITY
 #define POSITIVE 0.0, INFINITY
 #define REQUIRED PLS_KEY_REQUIRED
 #define OPEN     PLS_KEY_OPEN_MINIMUM
+
+#define FACE(section)                                                                                                                      \
+    {section, "area", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m^2", NULL, POSITIVE, "of the face, in 2D length times thickness"}, \
+        {section,                                                                                                                          \
+         "where",                                                                                                                          \
+         PLS_KEY_CONDITION,                                                                                                                \
+         0,                                                                                                                                \
+         PLS_USES_PLACE,                                                                                                                   \
+         NULL,                                                                                                                             \
+         NULL,                                                                                                                             \
+         "",                                                                                                                               \
+         NULL,                                                                                                                             \
+         ANY,                                                                                                                              \
+         "the bodies whose centres lie where this is true at the start, for example \"x > 0.99\"; all without it"},                        \
+    {                                                                                                                                      \
+        section, "bodies", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "all", ANY, "name of a body entry, or all"                                  \
+    }
 
 #define SCHEDULE(section)                                                                                                                 \
     {section, "every", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "s", NULL, POSITIVE, "time between looks; give this or `every_steps`"},       \
@@ -119,7 +148,8 @@ static const pls_key keys[] = {
     {"scene", "bodies", PLS_KEY_LIST, REQUIRED, 0, NULL, "body", "", NULL, ANY, "bodies and groups of bodies"},
     {"scene", "contact", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "contact", "", NULL, ANY, "contact laws"},
     {"scene", "bonds", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "bond", "", NULL, ANY, "bonds between bodies"},
-    {"scene", "forces", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "gravity|field_force|force_plugin", "", NULL, ANY, "body forces"},
+    {"scene", "forces", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "gravity|field_force|traction_force|pressure_force|force_plugin", "",
+     NULL, ANY, "body forces and loads on faces"},
     {"scene", "states", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "state", "", NULL, ANY, "further differential equations"},
     {"scene", "time", PLS_KEY_SECTION, REQUIRED, 0, NULL, "time", "", NULL, ANY, "duration and time step"},
     {"scene", "neighbours", PLS_KEY_SECTION, 0, 0, NULL, "neighbours", "", "", ANY, "neighbour search"},
@@ -248,7 +278,8 @@ static const pls_key keys[] = {
 
     {"bond", "name", PLS_KEY_NAME, 0, 0, NULL, NULL, "", NULL, ANY, "bonds_1, bonds_2, ... by default"},
     {"bond", "of", PLS_KEY_NAMES, REQUIRED, 0, "all", NULL, "", NULL, ANY, "list of body entries that are one continuum, or `all`"},
-    {"bond", "law", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "name of a bond law: linear_solid or bond_based"},
+    {"bond", "law", PLS_KEY_TEXT, REQUIRED, 0, NULL, NULL, "", NULL, ANY,
+     "name of a bond law: linear_solid, bond_based, elastic_plastic, viscoelastic_solid, beam, or a plugin's"},
     {"bond", "horizon", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "m", NULL, POSITIVE,
      "bonds join points no further apart at the start; about three spacings is usual"},
     {"bond", "influence", PLS_KEY_NUMBER, 0, PLS_USES_RADIUS, "inverse|one|conical|gaussian", NULL, "", "inverse", POSITIVE,
@@ -264,6 +295,18 @@ static const pls_key keys[] = {
      "bonds longer by more than this part break for good; without it, and without `fracture_energy`, none do"},
     {"bond", "fracture_energy", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "J/m^2", NULL, POSITIVE,
      "G, energy per area of a crack, in place of `critical_stretch`, which follows"},
+    {"bond", "criterion", PLS_KEY_WORD, 0, 0, "stretch|energy", NULL, "", "stretch", ANY,
+     "what `fracture_energy` sets: the critical stretch of bonds, or the critical energy that a bond stores by its two volumes, in a "
+     "continuum 4 G/(pi delta^4), in 2D 3 G/(2 h delta^3)"},
+    {"bond", "stiffness", PLS_KEY_NUMBER, OPEN, OF_POINT, NULL, NULL, "", "1", POSITIVE,
+     "times the moduli: an expression over the place of a point when bonds were made, its `temperature` (see `heat`), t, and `chance`, a "
+     "number in (0, 1) that each body draws; a bond takes the mean of its "
+     "two points"},
+    {"bond", "toughness", PLS_KEY_NUMBER, OPEN, OF_POINT, NULL, NULL, "", "1", POSITIVE,
+     "likewise, times what bonds withstand: the critical stretch or energy (of which `fracture_energy` sets the mean), or the strengths of "
+     "beams. Weibull's: \"(-log(chance))^(1/6)\""},
+    {"bond", "seed", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", "1", 0, 9007199254740992.0, "of `chance`"},
+    {"bond", "heat", PLS_KEY_SECTION, 0, 0, NULL, "heat", "", NULL, ANY, "temperature of the points"},
     {"bond", "cracks", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "crack", "", NULL, ANY, "cracks that are there from the start"},
     {"crack", "points", PLS_KEY_POINTS, 0, 0, NULL, NULL, "m", NULL, ANY,
      "2D: a line through these points; 3D: the corners of a flat convex polygon"},
@@ -271,13 +314,35 @@ static const pls_key keys[] = {
     {"crack", "normal", PLS_KEY_VECTOR, 0, 0, NULL, NULL, "", NULL, ANY, "of the disc"},
     {"crack", "radius", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "m", NULL, POSITIVE, "of the disc"},
 
+    {"heat", "conductivity", PLS_KEY_NUMBER, REQUIRED, 0, NULL, NULL, "W/(m K)", NULL, POSITIVE, "of the material, inside it"},
+    {"heat", "capacity", PLS_KEY_NUMBER, REQUIRED | OPEN, 0, NULL, NULL, "J/(kg K)", NULL, POSITIVE, "heat capacity by mass"},
+    {"heat", "expansion", PLS_KEY_NUMBER, 0, 0, NULL, NULL, "1/K", "0", ANY,
+     "linear thermal expansion: strain of a free body by temperature"},
+    {"heat", "initial", PLS_KEY_NUMBER, 0, PLS_USES_PLACE | PLS_USES_CHANCE, NULL, NULL, "K", "0", ANY, "temperature at the start"},
+    {"heat", "reference", PLS_KEY_NUMBER, 0, 0, "initial", NULL, "K", "initial", ANY,
+     "temperature at which bonds are as long as they were made; that of each point at the start by default"},
+    {"heat", "source", PLS_KEY_NUMBER, 0, PLS_USES_TIME | PLS_USES_PLACE | PLS_USES_TEMPERATURE, NULL, NULL, "W/m^3", "0", ANY,
+     "heat put in, by volume; through a surface with coefficient h, where it lies: \"x < dx ? h/dx*(293 - temperature) : 0\""},
+    {"heat", "held", PLS_KEY_LIST, PLS_KEY_MAY_BE_EMPTY, 0, NULL, "held", "", NULL, ANY, "points whose temperature is given"},
+    {"held", "temperature", PLS_KEY_NUMBER, REQUIRED, PLS_USES_TIME | PLS_USES_PLACE, NULL, NULL, "K", NULL, ANY, "it is kept at this"},
+    {"held", "where", PLS_KEY_CONDITION, 0, PLS_USES_TIME | PLS_USES_PLACE, NULL, NULL, "", NULL, ANY,
+     "of these points, by the place when bonds were made; all without it"},
     {"gravity", "gravity", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "m/s^2", NULL, ANY, "acceleration of every free body"},
     {"field_force", "field", PLS_KEY_SECTION, REQUIRED, 0, NULL, "field", "", NULL, ANY, "a field of forces"},
     {"field", "force", PLS_KEY_VECTOR, 0, FIELD, NULL, NULL, "N", NULL, ANY, "force on a body"},
     {"field", "acceleration", PLS_KEY_VECTOR, 0, FIELD, NULL, NULL, "m/s^2", NULL, ANY, "force per mass"},
+    {"field", "density", PLS_KEY_VECTOR, 0, FIELD, NULL, NULL, "N/m^3", NULL, ANY,
+     "force per volume, which is mass by the density of the material"},
     {"field", "where", PLS_KEY_CONDITION, 0, FIELD, NULL, NULL, "", NULL, ANY,
      "the field acts only where this is true, for example \"z > 0.5 && t < 1\""},
     {"field", "bodies", PLS_KEY_TEXT, 0, 0, NULL, NULL, "", "all", ANY, "name of a body entry, or all"},
+    {"traction_force", "traction", PLS_KEY_SECTION, REQUIRED, 0, NULL, "traction", "", NULL, ANY, "a force per area"},
+    {"traction", "value", PLS_KEY_VECTOR, REQUIRED, PLS_USES_TIME | PLS_USES_PLACE, NULL, NULL, "Pa", NULL, ANY, "force per area"},
+    FACE("traction"),
+    {"pressure_force", "pressure", PLS_KEY_SECTION, REQUIRED, 0, NULL, "pressure", "", NULL, ANY, "a pressure"},
+    {"pressure", "value", PLS_KEY_NUMBER, REQUIRED, PLS_USES_TIME | PLS_USES_PLACE, NULL, NULL, "Pa", NULL, ANY, "pressure"},
+    {"pressure", "normal", PLS_KEY_VECTOR, REQUIRED, 0, NULL, NULL, "", NULL, ANY, "outward normal of the face, of any length"},
+    FACE("pressure"),
 
     {"force_plugin", "NAME", PLS_KEY_PLUGIN, REQUIRED, 0, NULL, "plugin", "", NULL, ANY,
      "the plugin's name of the force; numbers may be expressions over t and states"},
@@ -302,6 +367,11 @@ static const pls_key keys[] = {
     {"time", "dt", PLS_KEY_NUMBER, OPEN, 0, "auto", NULL, "s", "auto", POSITIVE, "time step; auto takes the stable step times `safety`"},
     {"time", "safety", PLS_KEY_NUMBER, OPEN, 0, NULL, NULL, "", "0.5", 0, 1, "fraction of the stable step"},
     {"time", "allow_unstable", PLS_KEY_BOOLEAN, 0, 0, NULL, NULL, "", "false", ANY, "accept a step above the estimated stable one"},
+    {"time", "local_damping", PLS_KEY_NUMBER, 0, 0, NULL, NULL, "", "0", 0, 0.99,
+     "part of each force that works against the motion of its body (Cundall 1987), to bring a world to rest; 0.7 or 0.8 is usual"},
+    {"time", "relaxation", PLS_KEY_WORD, 0, 0, "none|adaptive", NULL, "", "none", ANY,
+     "adaptive: all velocities decay as is critical for the motion there is (adaptive dynamic relaxation), to find states of rest under "
+     "slow loads"},
     {"time", "coordination", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", NULL, 1, 1000,
      "contacts per body assumed by the estimate before they exist; 12, in 2D 6 by default"},
 

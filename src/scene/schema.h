@@ -53,13 +53,15 @@ enum {
 
 /// What an expression may use besides `vars`, pi and e.
 enum {
-    PLS_USES_TIME = 1,     ///< t
-    PLS_USES_PLACE = 2,    ///< x y z
-    PLS_USES_VELOCITY = 4, ///< vx vy vz
-    PLS_USES_RADIUS = 8,   ///< r
-    PLS_USES_MASS = 16,    ///< m
-    PLS_USES_OWN = 32,     ///< s: the state itself
-    PLS_USES_STATES = 64   ///< names of states
+    PLS_USES_TIME = 1,         ///< t
+    PLS_USES_PLACE = 2,        ///< x y z
+    PLS_USES_VELOCITY = 4,     ///< vx vy vz
+    PLS_USES_RADIUS = 8,       ///< r
+    PLS_USES_MASS = 16,        ///< m
+    PLS_USES_OWN = 32,         ///< s: the state itself
+    PLS_USES_STATES = 64,      ///< names of states
+    PLS_USES_CHANCE = 128,     ///< chance: a number in (0, 1) that each body draws
+    PLS_USES_TEMPERATURE = 256 ///< temperature: of the body in its bonds
 };
 
 typedef struct pls_key

@@ -365,8 +365,9 @@ static pls_status page_variables(pls_text *out, unsigned uses)
     {
         unsigned bit;
         const char *names;
-    } all[] = {{PLS_USES_TIME, "t"}, {PLS_USES_PLACE, "x y z"}, {PLS_USES_VELOCITY, "vx vy vz"}, {PLS_USES_RADIUS, "r"},
-               {PLS_USES_MASS, "m"}, {PLS_USES_OWN, "s"},       {PLS_USES_STATES, "states"}};
+    } all[] = {{PLS_USES_TIME, "t"},        {PLS_USES_PLACE, "x y z"},   {PLS_USES_VELOCITY, "vx vy vz"},
+               {PLS_USES_RADIUS, "r"},      {PLS_USES_MASS, "m"},        {PLS_USES_OWN, "s"},
+               {PLS_USES_STATES, "states"}, {PLS_USES_CHANCE, "chance"}, {PLS_USES_TEMPERATURE, "temperature"}};
     bool any = false;
     for (size_t k = 0; k < sizeof all / sizeof *all; ++k)
     {
@@ -421,7 +422,9 @@ static pls_status page_head(pls_text *out)
         "column *may use*; they are then evaluated during the run:\n\n"
         "| variable | meaning |\n|---|---|\n"
         "| `t` | time [s] |\n| `x y z` | centre of the body [m] |\n| `vx vy vz` | its velocity [m/s] |\n| `r` | its bounding radius [m] |\n"
-        "| `m` | its mass [kg] |\n| `s` | the state itself |\n| states | the value of any state by its name |\n\n"
+        "| `m` | its mass [kg] |\n| `s` | the state itself |\n| states | the value of any state by its name |\n"
+        "| `chance` | a number in (0, 1) that each body draws for itself; hides a name of `vars` |\n"
+        "| `temperature` | of the body in its bonds; hides a name of `vars` |\n\n"
         "Operators: `+ - * / ^`, `< <= > >= == !=`, `&&`, `||`, `condition ? a : b`. `log` is the natural logarithm. Functions:"));
     size_t count;
     const char *const *functions = pls_expression_functions(&count);

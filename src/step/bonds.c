@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "bond/bond_set.h"
+#include "bond/builtin.h"
 #include "bond/influence.h"
 #include "math/lanczos.h"
 #include "step/contact_rates.h"
@@ -19,7 +20,12 @@ static const double margin = 1.03; ///< Lanczos values come from below
 
 pls_bonds_def pls_default_bonds_def(void)
 {
-    return (pls_bonds_def){.influence = PLS_INFLUENCE_INVERSE, .critical_stretch = INFINITY, .fracture_energy = NAN, .cookie = COOKIE};
+    return (pls_bonds_def){.influence = PLS_INFLUENCE_INVERSE,
+                           .critical_stretch = INFINITY,
+                           .fracture_energy = NAN,
+                           .seed = 1,
+                           .heat = {.conductivity = NAN, .capacity = NAN, .reference = NAN},
+                           .cookie = COOKIE};
 }
 
 // ---- making --------------------------------------------------------------------------------------------------------------------------------------------
@@ -33,9 +39,7 @@ static pls_status check_def(const pls_world *world, const pls_bonds_def *def)
     if (def->ops->api_version != PLS_API_VERSION)
         return pls_fail(PLS_VERSION, "bond law '%s' is made for version %u of the interface; this is version %d: compile it anew",
                         def->ops->name ? def->ops->name : "?", def->ops->api_version, PLS_API_VERSION);
-    if (!def->ops->name || (def->ops->pair ? !def->ops->prepare || !def->ops->stiffness : !def->ops->linear))
-        return pls_fail(PLS_INVALID_ARGUMENT,
-                        "bonds '%s': their law lacks a name, or `linear`, or of `pair`, `prepare` and `stiffness` one", def->name);
+    PLS_TRY(pls_bond_ops_check(def->ops));
     if (!(def->horizon > 0.0) || !isfinite(def->horizon))
         return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the horizon is %g m; it must be positive", def->name, def->horizon);
     if (isnan(def->spacing) || isinf(def->spacing))
@@ -48,6 +52,9 @@ static pls_status check_def(const pls_world *world, const pls_bonds_def *def)
                         def->fracture_energy);
     if (!isnan(def->fracture_energy) && isfinite(def->critical_stretch))
         return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': give the critical stretch or the fracture energy, not both", def->name);
+    if (def->ops->pair && !isnan(def->heat.conductivity))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': bonds of law '%s' do not conduct heat; those of peridynamics do", def->name,
+                        def->ops->name);
     if (def->influence == PLS_INFLUENCE_FUNCTION && !def->weight)
         return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': the influence is a function, but none is given", def->name);
     for (size_t g = 0; g < def->group_count; ++g)
@@ -108,13 +115,14 @@ static pls_status ask_about(const pls_world *world, const pls_bonds_def *def, co
                             double constants[PLS_BOND_MAX_CONSTANTS])
 {
     const pls_bond_setting setting = {.dimension = world->def.dimension, .plane = def->plane, .material = world->laws.material[m].values};
-    const pls_status status = def->ops->pair ? def->ops->prepare(values, &setting, constants) : def->ops->linear(values, &setting, law);
+    pls_status status = def->ops->linear ? def->ops->linear(values, &setting, law) : PLS_OK;
+    if (status == PLS_OK && def->ops->prepare) status = def->ops->prepare(values, &setting, constants);
     return status == PLS_OK ? PLS_OK : pls_fail_context(status, "bonds '%s', material '%s': ", def->name, world->laws.material[m].name);
 }
 
-/// What the law says of every material that has points; a pair law must say the same of all.
+/// What the law says of every material that has points; a pair law must say the same of all. `some`: one of these materials.
 static pls_status ask_law(const pls_world *world, const pls_bonds_def *def, const pls_bond_point *point, size_t count,
-                          const uint16_t *material, pls_bond_coefficients *law, double constants[PLS_BOND_MAX_CONSTANTS])
+                          const uint16_t *material, pls_bond_coefficients *law, double (*constants)[PLS_BOND_MAX_CONSTANTS], size_t *some)
 {
     double values[PLS_MAX_VALUES];
     bool known = false;
@@ -122,31 +130,44 @@ static pls_status ask_law(const pls_world *world, const pls_bonds_def *def, cons
     for (size_t m = 0; m < world->laws.material_count; ++m)
     {
         bool used = false;
-        double own[PLS_BOND_MAX_CONSTANTS] = {0};
         for (size_t p = 0; p < count && !used; ++p) used = material[point[p].number] == m;
         if (!used) continue;
-        PLS_TRY(ask_about(world, def, values, m, &law[m], own));
-        if (known && memcmp(own, constants, sizeof own) != 0)
+        PLS_TRY(ask_about(world, def, values, m, &law[m], constants[m]));
+        if (def->ops->pair && known && memcmp(constants[m], constants[*some], sizeof constants[m]) != 0)
             return pls_fail(
                 PLS_INVALID_ARGUMENT,
                 "bonds '%s': law '%s' joins bodies of one material, but '%s' has other values than those before it; give sets of their own",
                 def->name, def->ops->name, world->laws.material[m].name);
-        memcpy(constants, own, sizeof own);
+        *some = m;
         known = true;
     }
     return PLS_OK;
 }
 
 /// The critical stretch that the fracture energy asks for, which must be that of all materials.
-static pls_status find_stretch(const pls_world *world, const pls_bonds_def *def, const pls_bond_coefficients *law, double *stretch)
+static pls_status find_stretch(const pls_world *world, const pls_bonds_def *def, const pls_bond_coefficients *law, double *stretch,
+                               double *energy)
 {
     const int d = world->def.dimension;
     *stretch = def->critical_stretch;
-    if (isnan(def->fracture_energy)) return PLS_OK;
+    *energy = INFINITY;
+    if (isnan(def->fracture_energy) && def->fracture == PLS_FRACTURE_STRETCH) return PLS_OK;
+    if (isnan(def->fracture_energy))
+        return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s' break by energy and have no fracture energy", def->name);
     if (def->ops->pair)
         return pls_fail(PLS_INVALID_ARGUMENT,
                         "bonds '%s': law '%s' breaks by its own strength or a critical stretch, not by a fracture energy", def->name,
                         def->ops->name);
+    if (def->fracture == PLS_FRACTURE_ENERGY && def->ops->pull)
+        return pls_fail(PLS_INVALID_ARGUMENT,
+                        "bonds '%s': bonds of law '%s', which is not linear, do not break by energy; let the fracture energy set a "
+                        "critical stretch",
+                        def->name, def->ops->name);
+    if (def->fracture == PLS_FRACTURE_ENERGY)
+    {
+        *energy = def->fracture_energy;
+        return PLS_OK;
+    }
     for (size_t m = 0; m < world->laws.material_count; ++m)
     {
         if (law[m].extension == 0.0) continue;                                               // no points of it
@@ -167,28 +188,59 @@ static pls_status find_stretch(const pls_world *world, const pls_bonds_def *def,
     return PLS_OK;
 }
 
+/// What a set is made from, while it is made.
+typedef struct drawing
+{
+    pls_bond_point *point;
+    uint16_t *material;
+    pls_bond_coefficients *law;
+    double (*constants)[PLS_BOND_MAX_CONSTANTS];
+    pls_heat_material *heat;
+} drawing;
+
+/// In plane strain the thickness that cannot grow pushes the plane apart.
+static pls_heat_material heat_of(const pls_world *world, const pls_bonds_def *def, size_t m)
+{
+    const pls_material_values *values = &world->laws.material[m].values;
+    const bool strain = world->def.dimension == 2 && def->plane == PLS_PLANE_STRAIN;
+    return (pls_heat_material){.density = values->density, .expansion = strain ? 1.0 + values->poisson_ratio : 1.0};
+}
+
+static pls_status draw(const pls_world *world, const pls_bonds_def *def, drawing *d, pls_bond_plan *plan, size_t *count)
+{
+    PLS_TRY(pls_allocate(&d->point, world->bodies.numbers, sizeof *d->point, "points of bonds"));
+    PLS_TRY(pls_allocate(&d->material, world->bodies.numbers, sizeof *d->material, "points of bonds"));
+    PLS_TRY(pls_allocate(&d->law, world->laws.material_count, sizeof *d->law, "points of bonds"));
+    PLS_TRY(pls_allocate(&d->constants, world->laws.material_count, sizeof *d->constants, "points of bonds"));
+    PLS_TRY(pls_allocate(&d->heat, world->laws.material_count, sizeof *d->heat, "points of bonds"));
+    for (size_t m = 0; m < world->laws.material_count; ++m) d->heat[m] = heat_of(world, def, m);
+    PLS_TRY(collect_points(world, def, d->point, d->material, count));
+    PLS_TRY(ask_law(world, def, d->point, *count, d->material, d->law, d->constants, &plan->some_material));
+    plan->law = d->law;
+    plan->constants = (const double(*)[PLS_BOND_MAX_CONSTANTS])d->constants;
+    plan->material = d->material;
+    plan->heat = d->heat;
+    return find_stretch(world, def, d->law, &plan->stretch, &plan->energy);
+}
+
 static pls_status make(pls_world *world, const pls_bonds_def *def, pls_bond_set *set)
 {
-    pls_bond_point *point = NULL;
-    uint16_t *material = NULL;
-    pls_bond_coefficients *law = NULL;
+    drawing d = {NULL};
     size_t count = 0;
-    pls_status status = pls_allocate(&point, world->bodies.numbers, sizeof *point, "points of bonds");
-    if (status == PLS_OK) status = pls_allocate(&material, world->bodies.numbers, sizeof *material, "points of bonds");
-    if (status == PLS_OK) status = pls_allocate(&law, world->laws.material_count, sizeof *law, "points of bonds");
-    if (status == PLS_OK) status = collect_points(world, def, point, material, &count);
-    double constants[PLS_BOND_MAX_CONSTANTS] = {0};
-    if (status == PLS_OK) status = ask_law(world, def, point, count, material, law, constants);
-    pls_bond_plan plan = {.def = def, .law = law, .constants = constants, .material = material};
-    if (status == PLS_OK) status = find_stretch(world, def, law, &plan.stretch);
+    pls_bond_plan plan = {.def = def, .materials = world->laws.material_count, .time = world->time};
+    pls_status status = draw(world, def, &d, &plan, &count);
     if (status == PLS_OK)
     {
-        status = pls_bond_set_make(set, &plan, point, count, &world->bodies, &world->domain);
-        point = NULL; // the set's
+        status = pls_bond_set_make(set, &plan, d.point, count, &world->bodies, &world->domain);
+        d.point = NULL; // the set's, as the user is
     }
-    pls_release(&point);
-    pls_release(&material);
-    pls_release(&law);
+    else if (def->release)
+        def->release(def->user);
+    pls_release(&d.point);
+    pls_release(&d.material);
+    pls_release(&d.law);
+    pls_release(&d.constants);
+    pls_release(&d.heat);
     return status;
 }
 
@@ -209,16 +261,23 @@ static void drop_contacts(pls_world *world, const pls_bond_set *set)
     world->records.count = kept;
 }
 
-pls_status pls_world_add_bonds(pls_world *world, const pls_bonds_def *def, pls_bonds_id *id)
+static pls_status prepare_to_add(pls_world *world, const pls_bonds_def *def)
 {
-    *id = (pls_bonds_id){0};
     PLS_TRY(check_def(world, def));
     if (world->bond_count >= UINT16_MAX - 1) return pls_fail(PLS_LIMIT_EXCEEDED, "a world holds at most %d sets of bonds", UINT16_MAX - 1);
     PLS_TRY(pls_reserve(&world->bond, &world->bond_capacity, world->bond_count + 1, sizeof *world->bond, "sets of bonds"));
-    PLS_TRY(pls_neighbours_detach(world));
+    return pls_neighbours_detach(world);
+}
+
+pls_status pls_world_add_bonds(pls_world *world, const pls_bonds_def *def, pls_bonds_id *id)
+{
+    *id = (pls_bonds_id){0};
+    pls_status status = prepare_to_add(world, def);
+    if (status != PLS_OK && def->cookie == COOKIE && def->release) def->release(def->user);
+    PLS_TRY(status);
     pls_bond_set *set = &world->bond[world->bond_count];
     PLS_TRY(make(world, def, set));
-    pls_status status = find_stiffness(world, set);
+    status = find_stiffness(world, set);
     if (status == PLS_OK && !isfinite(set->stiffness))
         status =
             pls_fail(PLS_NOT_A_NUMBER, "bonds '%s': their stiffness is no number; are moduli, masses and lengths in SI units?", def->name);
@@ -250,43 +309,87 @@ static void share_of(const pls_bond_set *set, int thread, int threads, size_t *f
     if (*last > set->family.count) *last = set->family.count;
 }
 
-void pls_bonds_place(pls_world *world, int thread, int threads)
+/// Time of the end of a step of length dt, or of now.
+static double end_of(const pls_world *world, double dt) { return dt > 0.0 ? (double)(world->step + 1) * dt : world->time; }
+
+pls_status pls_bonds_place(pls_world *world, double dt, int thread, int threads)
 {
     for (size_t s = 0; s < world->bond_count; ++s)
     {
+        pls_bond_set *set = &world->bond[s];
         size_t first, last;
-        share_of(&world->bond[s], thread, threads, &first, &last);
-        pls_bond_take_places(&world->bond[s], &world->bodies, first, last);
+        share_of(set, thread, threads, &first, &last);
+        pls_bond_take_places(set, &world->bodies, first, last);
+        if (set->conditions.row) PLS_TRY(pls_conditions_take(&set->conditions, &set->family, first, last, end_of(world, dt), dt));
     }
+    return PLS_OK;
+}
+
+static void take_ghosts(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s) pls_bond_take_ghosts(&world->bond[s], &world->domain);
+}
+
+static void take_conditions(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (world->bond[s].conditions.row) pls_conditions_taken(&world->bond[s].conditions, &world->bond[s].family);
 }
 
 void pls_bonds_placed(pls_world *world)
 {
-    for (size_t s = 0; s < world->bond_count; ++s) pls_bond_take_ghosts(&world->bond[s], &world->domain);
+    take_ghosts(world);
+    take_conditions(world);
+}
+
+pls_status pls_bonds_restored(pls_world *world)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        pls_bond_set *set = &world->bond[s];
+        if (set->conditions.row) PLS_TRY(pls_conditions_take(&set->conditions, &set->family, 0, set->family.count, world->time, 0.0));
+    }
+    take_conditions(world);
+    return PLS_OK;
 }
 
 bool pls_bonds_dilate_at_all(const pls_world *world)
 {
     for (size_t s = 0; s < world->bond_count; ++s)
-        if (world->bond[s].dilates) return true;
+        if (world->bond[s].dilates || world->bond[s].states.ops || world->bond[s].conditions.warmth) return true;
     return false;
 }
 
-void pls_bonds_dilate(pls_world *world, int thread, int threads)
+pls_status pls_bonds_dilate(pls_world *world, double dt, int thread, int threads)
 {
     for (size_t s = 0; s < world->bond_count; ++s)
     {
+        pls_bond_set *set = &world->bond[s];
         size_t first, last;
-        share_of(&world->bond[s], thread, threads, &first, &last);
-        if (world->bond[s].dilates) PLS_SIMD_SELECT(pls_bond_dilate)(&world->bond[s], first, last);
+        share_of(set, thread, threads, &first, &last);
+        if (set->states.ops)
+            pls_bond_ask_states(set, first, last, dt);
+        else if (set->dilates && pls_bond_varies(set))
+            PLS_SIMD_SELECT(pls_bond_dilate_varied)(set, first, last);
+        else if (set->dilates)
+            PLS_SIMD_SELECT(pls_bond_dilate)(set, first, last);
+        if (set->conditions.warmth) PLS_TRY(pls_conditions_conduct(&set->conditions, &set->family, first, last, end_of(world, dt), dt));
     }
+    return PLS_OK;
 }
 
 void pls_bonds_dilated(pls_world *world)
 {
     for (size_t s = 0; s < world->bond_count; ++s)
-        if (world->bond[s].dilates) pls_bond_take_spread(&world->bond[s]);
-    pls_bonds_placed(world);
+        if (world->bond[s].dilates && !world->bond[s].states.ops) pls_bond_take_spread(&world->bond[s]);
+    take_ghosts(world);
+}
+
+static bool act(pls_bond_set *set, size_t first, size_t last)
+{
+    if (set->links.ops) return PLS_SIMD_SELECT(pls_link_act)(set, first, last);
+    if (set->states.ops) return PLS_SIMD_SELECT(pls_states_act)(set, first, last);
+    return pls_bond_varies(set) ? PLS_SIMD_SELECT(pls_bond_act_varied)(set, first, last) : PLS_SIMD_SELECT(pls_bond_act)(set, first, last);
 }
 
 void pls_bonds_act(pls_world *world, int thread, int threads)
@@ -295,9 +398,7 @@ void pls_bonds_act(pls_world *world, int thread, int threads)
     {
         size_t first, last;
         share_of(&world->bond[s], thread, threads, &first, &last);
-        const bool links = world->bond[s].links.ops != NULL;
-        if (first < last && (links ? PLS_SIMD_SELECT(pls_link_act) : PLS_SIMD_SELECT(pls_bond_act))(&world->bond[s], first, last))
-            __atomic_store_n(&world->bond[s].any_overlong, true, __ATOMIC_RELAXED);
+        if (first < last && act(&world->bond[s], first, last)) __atomic_store_n(&world->bond[s].any_overlong, true, __ATOMIC_RELAXED);
     }
 }
 
@@ -394,8 +495,20 @@ static void let_touch(void *context, uint32_t a, uint32_t b)
         pls_pair_list_let_go(&world->list, row_a, row_b);
 }
 
+/// What laws took in the step is booked with what dashpots take.
+static void book_spent(pls_world *world, const pls_bond_set *set)
+{
+    for (size_t p = 0; p < set->family.count; ++p)
+    {
+        const uint32_t row = world->bodies.row_of[set->number[p]];
+        if (row != PLS_NO_ROW) world->bodies.damped[row] += set->states.spent[p];
+    }
+}
+
 void pls_bonds_acted(pls_world *world)
 {
+    for (size_t s = 0; s < world->bond_count; ++s)
+        if (world->bond[s].states.ops && world->bond[s].states.ops->advance) book_spent(world, &world->bond[s]);
     for (size_t s = 0; s < world->bond_count; ++s)
         if (world->bond[s].any_overlong)
             pls_bond_break_overlong(&world->bond[s], &world->bodies, &world->domain, world->dt, let_touch, world);
@@ -416,6 +529,13 @@ void pls_bonds_leave(pls_world *world, uint32_t number)
         }
         set->point_of[number] = PLS_NO_POINT; // another body may get the number
     }
+}
+
+size_t pls_bonds_remembered(const pls_world *world)
+{
+    size_t count = 0;
+    for (size_t s = 0; s < world->bond_count; ++s) count += pls_bond_remembered(&world->bond[s]);
+    return count;
 }
 
 // ---- the stable step -----------------------------------------------------------------------------------------------------------------------------------------
@@ -572,13 +692,31 @@ static pls_status find_stiffness(const pls_world *world, pls_bond_set *set)
     return status;
 }
 
+/// As it was made, times what the stiffest point is stiffer by now; and what conduction asks for: h < 1/l of the largest eigenvalue l, as a rate whose bound 2/w is that.
+static double rate_of(const pls_bond_set *set)
+{
+    const double stiffness = set->conditions.row ? fmax(set->conditions.stiffest, 1.0) * set->stiffness : set->stiffness;
+    return fmax(stiffness, 4.0 * set->conditions.fastest * set->conditions.fastest);
+}
+
+bool pls_bonds_conduct_faster(const pls_world *world, uint32_t number)
+{
+    for (size_t s = 0; s < world->bond_count; ++s)
+    {
+        const pls_bond_set *set = &world->bond[s];
+        const double conduction = 4.0 * set->conditions.fastest * set->conditions.fastest;
+        if (number < set->numbers && set->point_of[number] != PLS_NO_POINT && conduction >= rate_of(set) && conduction > 0.0) return true;
+    }
+    return false;
+}
+
 double pls_bonds_rate(const pls_world *world, uint32_t number, bool of_rotation)
 {
     double sum = 0.0;
     for (size_t s = 0; s < world->bond_count; ++s)
     {
         const pls_bond_set *set = &world->bond[s];
-        if (number < set->numbers && set->point_of[number] != PLS_NO_POINT && (!of_rotation || set->links.ops)) sum += set->stiffness;
+        if (number < set->numbers && set->point_of[number] != PLS_NO_POINT && (!of_rotation || set->links.ops)) sum += rate_of(set);
     }
     return sum;
 }
@@ -654,6 +792,15 @@ double pls_world_bonds_damage(const pls_world *world, pls_bonds_id id, pls_body_
     const pls_bond_set *set = &world->bond[id.index1 - 1];
     const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT;
     return p == PLS_NO_POINT ? NAN : (double)pls_bond_lost(set, p) / (double)set->family.size[p];
+}
+
+double pls_world_bonds_temperature(const pls_world *world, pls_bonds_id id, pls_body_id body)
+{
+    const uint32_t number = body.index1 - 1;
+    if (id.index1 < 1 || id.index1 > world->bond_count || pls_body_row(world, body) == PLS_NO_ROW) return NAN;
+    const pls_bond_set *set = &world->bond[id.index1 - 1];
+    const uint32_t p = number < set->numbers ? set->point_of[number] : PLS_NO_POINT;
+    return p == PLS_NO_POINT || !set->conditions.warmth ? NAN : set->conditions.warmth[p][PLS_HEAT_TEMPERATURE];
 }
 
 pls_status pls_world_cut_bonds(pls_world *world, pls_bonds_id id, pls_vec3 a, pls_vec3 b, pls_vec3 c, size_t *cut)

@@ -2,6 +2,7 @@
 
 #include "contact/pair_list.h"
 #include "model/bodies.h"
+#include "step/derived.h"
 #include "step/world.h"
 
 #include <string.h>
@@ -59,6 +60,14 @@ static const pls_field body_fields[] = {
     {name, type, components, flags, unit, meaning, COLUMN_##column, OFFSET_OF(row, member)},
     PLS_BODY_FIELDS(BODY_FIELD)
 #undef BODY_FIELD
+        {"fragment", PLS_U32, 1, PLS_FIELD_DERIVED, "",
+         "lowest number of the bodies that bonds hold together with it, its own where none holds it; 4294967295 for bodies without bonds",
+         0, 0},
+    {"temperature", PLS_F64, 1, PLS_FIELD_DERIVED, "K", "of points of bonds with heat, else no number", 0, 0},
+    {"plastic_strain", PLS_F64, 1, PLS_FIELD_DERIVED, "",
+     "equivalent plastic strain of points of elastic-plastic bonds (of other bond laws the first number they remember of a point), else no "
+     "number",
+     0, 0},
 };
 
 typedef struct pls_remembered remembered;
@@ -113,6 +122,10 @@ static const pls_field point_fields[] = {
     {"energy_broken", PLS_F64, 1, PERSISTS, "J", "energy its bonds held when they broke", 0, 0},
 };
 
+static const pls_field memory_fields[] = {
+    {"value", PLS_F64, 1, PERSISTS, "", "what the law remembers", 0, 0},
+};
+
 static const struct
 {
     const char *name;
@@ -126,6 +139,7 @@ static const struct
     [PLS_TABLE_NUMBERS] = {"numbers", number_fields, sizeof number_fields / sizeof number_fields[0]},
     [PLS_TABLE_BONDS] = {"bonds", bond_fields, sizeof bond_fields / sizeof bond_fields[0]},
     [PLS_TABLE_POINTS] = {"points", point_fields, sizeof point_fields / sizeof point_fields[0]},
+    [PLS_TABLE_MEMORY] = {"memory", memory_fields, sizeof memory_fields / sizeof memory_fields[0]},
 };
 
 const pls_field *pls_fields(pls_table_kind table, size_t *count)
@@ -147,6 +161,7 @@ pls_status pls_world_body_field(const pls_world *world, const char *name, pls_fi
 {
     const pls_field *field = pls_field_find(PLS_TABLE_BODIES, name);
     if (!field) return pls_fail(PLS_NOT_FOUND, "bodies have no field '%s'", name);
+    if (field->flags & PLS_FIELD_DERIVED) return pls_derive_field(world, field, view);
     *view = (pls_field_view){.data = (const char *)pls_bodies_column(&world->bodies, field->column) + field->offset,
                              .stride = pls_bodies_row_size(field->column),
                              .count = world->bodies.count,

@@ -73,6 +73,7 @@ pls_status pls_persist_save_begin(pls_world *world, pls_persist_header *header)
     header->rows[PLS_TABLE_NUMBERS] = world->bodies.numbers;
     header->rows[PLS_TABLE_BONDS] = pls_bonds_count(world);
     header->rows[PLS_TABLE_POINTS] = pls_bonds_points(world);
+    header->rows[PLS_TABLE_MEMORY] = pls_bonds_remembered(world);
     return PLS_OK;
 }
 
@@ -123,6 +124,12 @@ pls_status pls_persist_get(pls_world *world, pls_table_kind table, const pls_fie
             memcpy(to, world->bond[s].broken, world->bond[s].family.count * size);
         return PLS_OK;
     }
+    if (table == PLS_TABLE_MEMORY)
+    {
+        for (size_t s = 0; s < world->bond_count; to += pls_bond_remembered(&world->bond[s++]) * size)
+            pls_bond_read_memory(&world->bond[s], (double *)to);
+        return PLS_OK;
+    }
     const tables *made = world->persisting;
     if (!made) return pls_fail(PLS_INVALID_ARGUMENT, "the contact tables are read between pls_persist_save_begin and _end");
     if (table == PLS_TABLE_CONTACTS)
@@ -144,6 +151,9 @@ pls_status pls_persist_restore_begin(pls_world *world, const pls_persist_header 
         return pls_fail(PLS_CORRUPT, "the saved state holds %llu bonds of %llu points, the scene has %zu of %zu",
                         (unsigned long long)header->rows[PLS_TABLE_BONDS], (unsigned long long)header->rows[PLS_TABLE_POINTS],
                         pls_bonds_count(world), pls_bonds_points(world));
+    if (header->rows[PLS_TABLE_MEMORY] != pls_bonds_remembered(world))
+        return pls_fail(PLS_CORRUPT, "the saved state holds %llu numbers that bonds remember, those of the scene remember %zu",
+                        (unsigned long long)header->rows[PLS_TABLE_MEMORY], pls_bonds_remembered(world));
     if (header->rows[PLS_TABLE_NUMBERS] >= PLS_NO_ROW || header->rows[PLS_TABLE_BODIES] > header->rows[PLS_TABLE_NUMBERS] ||
         header->rows[PLS_TABLE_CONTACTS] >= PLS_NO_ROW || header->rows[PLS_TABLE_PAIRS] >= PLS_NO_ROW || !(header->dt > 0.0) ||
         !isfinite(header->time))
@@ -208,6 +218,9 @@ pls_status pls_persist_put(pls_world *world, pls_table_kind table, const pls_fie
     else if (table == PLS_TABLE_POINTS)
         for (size_t s = 0; s < world->bond_count; from += world->bond[s++].family.count * size)
             memcpy(world->bond[s].broken, from, world->bond[s].family.count * size);
+    else if (table == PLS_TABLE_MEMORY)
+        for (size_t s = 0; s < world->bond_count; from += pls_bond_remembered(&world->bond[s++]) * size)
+            pls_bond_write_memory(&world->bond[s], (const double *)from);
     else if (table == PLS_TABLE_CONTACTS)
         for (size_t k = 0; k < world->memory.count; ++k) memcpy((char *)&world->memory.entry[k] + field->offset, from + k * size, size);
     else
@@ -269,6 +282,7 @@ pls_status pls_persist_restore_end(pls_world *world)
     for (size_t k = 0; k < world->records.count; ++k) PLS_TRY(check_record(world, &world->records.entry[k]));
     for (size_t s = 0; s < world->bond_count; ++s) PLS_TRY(pls_bond_check_restored(&world->bond[s], bodies));
     for (uint32_t n = 0; world->bond_count > 0 && n < bodies->numbers; ++n) pls_bonds_note_damage(world, n);
+    PLS_TRY(pls_bonds_restored(world));
     return pls_world_resume(world);
 }
 

@@ -1,6 +1,6 @@
 // step.c -- one time step, read from top to bottom.
 //
-//     half kick, drift -> driven bodies -> states -> neighbours (if stale) -> contacts and laws -> body forces, gather, half kick -> guards
+//     half kick, drift -> driven bodies -> states -> neighbours (if stale) -> contacts and laws -> body forces, gather, half kick -> damping -> guards
 //
 // The order differs from the picture in which states come last: forces at t + dt need states at t + dt, and after the drift the midpoint rates of everything
 // that states depend on are known (state_rk2.c).
@@ -46,7 +46,9 @@ static pls_status complete_steps(pls_world *world, uint64_t end, bool *begun)
     PLS_TRY(pls_neighbours_refresh(world));
     PLS_TRY(pls_sweep(world, world->dt, end, begun));
     if (*begun) return PLS_OK;
+    pls_damp_locally(world);
     pls_special_finish(world);
+    PLS_TRY(pls_relax(world));
     ++world->step;
     world->time = (double)world->step * world->dt;
     return check_step(world);

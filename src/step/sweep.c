@@ -363,13 +363,14 @@ static void meet(sweep *s, pls_barrier *barrier, const share *mine, void (*whole
 }
 
 /// Forces of all bonds, before any body is finished.
-static void sweep_bonds(sweep *s, const share *mine)
+static void sweep_bonds(sweep *s, share *mine)
 {
-    pls_bonds_place(s->world, mine->thread, mine->threads);
+    mine->status = pls_bonds_place(s->world, s->input.dt, mine->thread, mine->threads);
     meet(s, &s->bonds_placed, mine, pls_bonds_placed);
     if (pls_bonds_dilate_at_all(s->world))
     {
-        pls_bonds_dilate(s->world, mine->thread, mine->threads);
+        const pls_status status = pls_bonds_dilate(s->world, s->input.dt, mine->thread, mine->threads);
+        if (mine->status == PLS_OK) mine->status = status;
         meet(s, &s->bonds_dilated, mine, pls_bonds_dilated);
     }
     pls_bonds_act(s->world, mine->thread, mine->threads);
@@ -395,7 +396,7 @@ static bool is_looked_at(const pls_world *world)
 static bool may_go_on(const pls_world *world, uint64_t end)
 {
     return world->step + 1 < end && !is_looked_at(world) && world->special_count == 0 && world->state_count == 0 &&
-           world->binding_count == 0;
+           world->binding_count == 0 && !pls_damps(world);
 }
 
 /// Add up what a thread found; threads come one at a time.

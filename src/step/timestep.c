@@ -291,7 +291,9 @@ static pls_status refuse(const pls_world *world, int coordination, const pls_ste
                  "many, "
                  "say how many by time.coordination.",
                  coordination);
-    if (!e->damping_limits && e->bonds > 0.5 * e->stiffness)
+    if (!e->damping_limits && e->bonds > 0.5 * e->stiffness && pls_bonds_conduct_faster(world, e->body))
+        snprintf(limit, sizeof limit, "heat in its bonds limits it: fastest rate %.4g 1/s", 0.5 * sqrt(e->bonds));
+    else if (!e->damping_limits && e->bonds > 0.5 * e->stiffness)
         snprintf(limit, sizeof limit, "its bonds limit it: natural frequency %.4g 1/s", sqrt(e->bonds));
     else if (e->damping_limits)
         snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping,

@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 #include "shape/builtin.h"
 #include "step/bonds.h"
+#include "step/derived.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -54,6 +55,8 @@ static pls_status check_world_def(const pls_world_def *def)
         return pls_fail(PLS_INVALID_ARGUMENT, "safety is %g; it must lie in (0, 1]", def->safety);
     if (!(def->skin >= 0.0) || !isfinite(def->skin))
         return pls_fail(PLS_INVALID_ARGUMENT, "the skin is %g m; it must be positive, or 0 to have it tuned", def->skin);
+    if (!(def->local_damping >= 0.0 && def->local_damping < 1.0))
+        return pls_fail(PLS_INVALID_ARGUMENT, "the local damping is %g; it must lie in [0, 1)", def->local_damping);
     if (def->coordination < 0)
         return pls_fail(PLS_INVALID_ARGUMENT, "the assumed coordination is %d; it must not be negative", def->coordination);
     if (!(def->max_overlap > 0.0)) return pls_fail(PLS_INVALID_ARGUMENT, "max_overlap is %g; it must be positive", def->max_overlap);
@@ -73,6 +76,12 @@ pls_status pls_world_create(const pls_world_def *def, pls_world **out)
     PLS_TRY(check_world_def(def));
     pls_world *world = NULL;
     PLS_TRY(pls_allocate(&world, 1, sizeof *world, "the world"));
+    const pls_status status = pls_allocate(&world->derived, 1, sizeof *world->derived, "the world");
+    if (status != PLS_OK)
+    {
+        pls_release(&world);
+        return status;
+    }
     world->def = *def;
     world->dt = def->dt;
     pls_domain *domain = &world->domain;
@@ -127,6 +136,8 @@ void pls_world_destroy(pls_world *world)
     pls_release(&world->left);
     pls_release(&world->work);
     pls_release(&world->special);
+    if (world->derived) pls_derived_free(world->derived);
+    pls_release(&world->derived);
     pls_release(&world);
 }
 

@@ -134,12 +134,13 @@ struct pls_world
     uint64_t step; ///< steps done
     double time;   ///< step * dt
     bool prepared;
-    double path;        ///< bound on how much two bodies can have come nearer in all steps [m]
-    double overlap_due; ///< length of the path from which an overlap may be too large [m]
-    double lost_due;    ///< likewise, from which a body may be lost [m]
-    double extent;      ///< size of the first arrangement [m], for lost bodies; 0 until measured
-    pls_vec3 centre;    ///< of the first arrangement [m]
-    void *persisting;   ///< contact table while persist.c reads it
+    double path;                 ///< bound on how much two bodies can have come nearer in all steps [m]
+    double overlap_due;          ///< length of the path from which an overlap may be too large [m]
+    double lost_due;             ///< likewise, from which a body may be lost [m]
+    double extent;               ///< size of the first arrangement [m], for lost bodies; 0 until measured
+    pls_vec3 centre;             ///< of the first arrangement [m]
+    struct pls_derived *derived; ///< fields that nobody keeps, while somebody looks at them
+    void *persisting;            ///< contact table while persist.c reads it
 };
 
 // motion.c
@@ -192,6 +193,13 @@ pls_status pls_find_force_parameter(const pls_world *world, pls_force_id force, 
 /// Potential energy of the body in row `row` of `bodies` in all forces of the world that have one [J].
 double pls_force_potential(const pls_world *world, const pls_bodies *bodies, uint32_t row);
 enum { PLS_FORCE_SCRATCH = (11 + 6) * PLS_FORCE_BATCH }; ///< doubles: what forces read and what they give
+
+// damping.c
+/// Whether motion is damped; forces and velocities of each step's end are looked at then.
+bool pls_damps(const pls_world *world);
+/// Local damping of the forces that the step has found, before special bodies are finished; relaxation of the velocities of its end.
+void pls_damp_locally(pls_world *world);
+pls_status pls_relax(pls_world *world);
 
 // guard.c
 pls_status pls_guard_finite(pls_world *world);

@@ -63,7 +63,7 @@ static void place(pls_world *world, pls_body_id id, pls_vec3 x, pls_quat q)
 
 static void act(pls_world *world)
 {
-    pls_bonds_place(world, 0, 1);
+    MUST(pls_bonds_place(world, 0.0, 0, 1));
     pls_bonds_placed(world);
     pls_bonds_act(world, 0, 1);
 }
@@ -246,6 +246,134 @@ static void a_cantilever_bends_as_under_its_point_loads(void **state)
     verify_close(&scene);
 }
 
+// ---- large deflections -------------------------------------------------------------------------------------------------------------------------------------
+
+/// The elastica: EI theta'' = -P cos(theta), theta(0) = 0, theta'(L) = 0, by shooting with Runge-Kutta. Deflection of the end by the length, for a load P L^2/EI.
+static double elastica(double load)
+{
+    enum { STEPS = 2000 };
+    double low = 0.0, high = load; // of the curvature at the clamp
+    double y = 0.0;
+    for (int pass = 0; pass < 80; ++pass)
+    {
+        const double start = 0.5 * (low + high), h = 1.0 / STEPS;
+        double angle = 0.0, curvature = start;
+        y = 0.0;
+        for (int k = 0; k < STEPS; ++k)
+        {
+            const double a1 = curvature, c1 = -load * cos(angle), a2 = curvature + 0.5 * h * c1, c2 = -load * cos(angle + 0.5 * h * a1);
+            const double a3 = curvature + 0.5 * h * c2, c3 = -load * cos(angle + 0.5 * h * a2), a4 = curvature + h * c3,
+                         c4 = -load * cos(angle + h * a3);
+            y += h / 6.0 * (sin(angle) + 4.0 * sin(angle + 0.5 * h * a2) + sin(angle + h * a3));
+            angle += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+            curvature += h / 6.0 * (c1 + 2.0 * c2 + 2.0 * c3 + c4);
+        }
+        if (curvature > 0.0)
+            high = start;
+        else
+            low = start;
+    }
+    return y;
+}
+
+static double end_load;
+static uint32_t end_body;
+static void load_the_end(double time, pls_vec3 position, pls_vec3 velocity, uint32_t body, pls_vec3 *force, pls_vec3 *torque)
+{
+    (void)time, (void)position, (void)velocity, (void)torque;
+    *force = pls_vec(0, body == end_body ? -end_load : 0.0, 0);
+}
+
+/// Points on 1 m along x, the first one clamped, of this mass each.
+static pls_body_id make_cantilever(const verify_scene *scene, size_t points, double mass)
+{
+    pls_body_id tip = {0, 0};
+    const double l = 1.0 / (double)(points - 1);
+    for (size_t k = 0; k < points; ++k)
+    {
+        pls_body_def def =
+            verify_ball_def(scene, 0.4 * l, k == 0 || k == points - 1 ? 0.5 * mass : mass, pls_vec(l * (double)k, 0, 0), pls_vec(0, 0, 0));
+        if (k == 0) def.motion.axes = PLS_AXIS_ALL;
+        tip = verify_add(scene, &def);
+    }
+    join(scene, 1.2 * l, 0.0, 0.0);
+    return tip;
+}
+
+/// A small load, P L^3/(3 EI), and loads that bend the beam to half of its length and further.
+static void the_end_follows_the_elastica(void **state)
+{
+    (void)state;
+    assert_true(fabs(elastica(1.0) - 0.30172) < 1e-4); // Bisshopp and Drucker 1945, Mattiasson 1981
+    assert_true(fabs(elastica(2.0) - 0.49346) < 1e-4);
+    const double loads[] = {0.01, 2.0, 2.1, 5.0}, tolerance[] = {1e-3, 0.01, 0.01, 0.01};
+    for (size_t n = 0; n < 4; ++n)
+    {
+        pls_world_def def = pls_default_world_def(2);
+        def.dt = 1e-4;
+        def.coordination = 0;
+        def.relaxation = true;
+        const verify_value law[] = {{"kn", 1.0}, {NULL, 0.0}};
+        verify_scene scene = verify_open(&def, "elastic", law);
+        MUST(pls_world_set_material_value(scene.world, scene.grain, "young_modulus", young));
+        MUST(pls_world_set_material_value(scene.world, scene.grain, "poisson_ratio", poisson));
+        const pls_body_id tip = make_cantilever(&scene, 21, 0.05);
+        const verify_field field = {load_the_end, NULL};
+        end_load = loads[n] * bending();
+        end_body = tip.index1 - 1;
+        verify_add_field(scene.world, &field);
+        MUST(pls_world_run(scene.world, 40000)); // 4 s, twice the slowest period
+        const double found = -verify_motion(scene.world, tip).position.y, expected = n == 0 ? loads[0] / 3.0 : elastica(loads[n]);
+        if (!(fabs(found / expected - 1.0) < tolerance[n])) fail_msg("load %g: the end is at %g, not %g", loads[n], found, expected);
+        assert_true(verify_figures(scene.world).energy_kinetic < 1e-6);
+        verify_close(&scene);
+    }
+}
+
+/// Shape of a mode of a cantilever (Rayleigh; beta L of the modes).
+static double mode_shape(double beta, double x)
+{
+    const double c = (cosh(beta) + cos(beta)) / (sinh(beta) + sin(beta));
+    return cosh(beta * x) - cos(beta * x) - c * (sinh(beta * x) - sin(beta * x));
+}
+
+/// The first three frequencies, (beta L)^2 sqrt(EI/(M L^3)), from the time in which the velocity in the shape of each mode falls to zero.
+static void a_cantilever_has_its_natural_frequencies(void **state)
+{
+    (void)state;
+    enum { COUNT = 61 };
+    const double betas[] = {1.8751040687, 4.6940911330, 7.8547574382}, mass = 1.0 / (COUNT - 1);
+    for (int mode = 0; mode < 3; ++mode)
+    {
+        const double expected = betas[mode] * betas[mode] * sqrt(bending()), dt = fmin(2e-5, 0.5 * pi / expected / 500.0);
+        verify_scene scene = open_scene(2, dt);
+        const pls_body_id tip = make_cantilever(&scene, COUNT, mass);
+        pls_body_id id[COUNT];
+        for (uint32_t k = 0; k < COUNT; ++k)
+        {
+            id[k] = (pls_body_id){tip.index1 - (COUNT - 1) + k, tip.generation};
+            const double x = (double)k / (COUNT - 1), h = 1e-5;
+            const double slope = (mode_shape(betas[mode], x + h) - mode_shape(betas[mode], x - h)) / (2.0 * h);
+            if (k > 0)
+                MUST(pls_body_set_velocity(scene.world, id[k], pls_vec(0, 1e-4 * mode_shape(betas[mode], x), 0),
+                                           pls_vec(0, 0, 1e-4 * slope)));
+        }
+        double before = 0.0, now = INFINITY;
+        while (now > 0.0 && pls_world_step_number(scene.world) < 1000000)
+        {
+            MUST(pls_step(scene.world));
+            before = now;
+            now = 0.0;
+            for (uint32_t k = 1; k < COUNT; ++k)
+                now += (k == COUNT - 1 ? 0.5 : 1.0) * mode_shape(betas[mode], (double)k / (COUNT - 1)) *
+                       verify_motion(scene.world, id[k]).velocity.y;
+        }
+        const double found = 0.5 * pi / (pls_world_time(scene.world) - dt * now / (now - before));
+        if (!(fabs(found / expected - 1.0) < 0.01)) fail_msg("mode %d: %g instead of %g 1/s", mode + 1, found, expected);
+        verify_close(&scene);
+    }
+}
+
 // ---- strength ----------------------------------------------------------------------------------------------------------------------------------------------------
 
 /// Pull, bend, shear or twist a beam slowly, until it breaks; how far.
@@ -300,6 +428,8 @@ int main(void)
         cmocka_unit_test(forces_turn_with_the_whole_whatever_the_numbers),
         cmocka_unit_test(a_tumbling_cluster_keeps_energy_and_momenta),
         cmocka_unit_test(a_cantilever_bends_as_under_its_point_loads),
+        cmocka_unit_test(the_end_follows_the_elastica),
+        cmocka_unit_test(a_cantilever_has_its_natural_frequencies),
         cmocka_unit_test(a_beam_breaks_at_its_strength),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -189,11 +189,26 @@ observe:
   - {particle: a, quantities: [position], every: 0.1}
 YAML
 
+# Two points that fly apart, joined by a bond that is softer where it is stretched.
+cat >two.yaml <<'YAML'
+particls: 1
+plugins: [./my_plugin.so]
+materials: {solid: {density: 1000, young_modulus: 1.0e6}}
+shapes: {pair: {box: {half: [0.1, 0.05, 0.05]}}, point: {sphere: {radius: 0.04}}}
+bodies: [{name: points, shape: point, material: solid, velocity: ["0.1*x", 0, 0], place: {fill: {region: pair, spacing: 0.1}}}]
+contact: [{between: all, law: elastic, kn: 1}]
+bonds: [{of: [points], law: my_bond, horizon: 0.15, tension: 0.2}]
+time: {end: 0.0075, dt: 1.0e-5}
+observe:
+  - {particle: points, quantities: [position], every_steps: 1}
+  - {collection: all, name: energies, quantities: [energy], every_steps: 10}
+YAML
+
 # A run that is stopped in the middle and resumed: rows, the summary and what observers remember are those of a run that was not.
 "$PARTICLS" run cloud.yaml -o halves --until 0.146 --quiet --threads 1 && "$PARTICLS" resume halves --until 0.3 --quiet --threads 1 ||
     complain "the cloud cannot be resumed"
 
-for scene in pull drag cloud plane elastic my_law viscoelastic no_cohesion cohesion ceiling_2 ceiling_0.5; do
+for scene in two pull drag cloud plane elastic my_law viscoelastic no_cohesion cohesion ceiling_2 ceiling_0.5; do
     "$PARTICLS" run $scene.yaml -o $scene --quiet --threads 1 || complain "$scene does not run"
 done
 
@@ -253,6 +268,17 @@ off = next(row[0] for row in pull if row[3] < -0.1)
 assert abs(rate * off - f0) < 2e-3 * f0, (rate * off, f0)
 work = sum(rate * (b[0] + a[0]) / 2 * (a[3] - b[3]) for a, b in zip(pull, pull[1:]) if b[0] < off)
 assert abs(work - f0**2 / (2 * kn)) < 2e-3 * f0**2 / (2 * kn), (work, f0**2 / (2 * kn))
+
+# Half a period stretched, half a period compressed: k = 2 b V/xi^2 of both families, b = 6 E, times 0.2 where it is stretched; reduced mass m/2.
+_, rows = table("two/series/points.csv")
+gaps = [(row[0], row[4] - row[1] - 0.1) for row in rows]
+turns = [a[0] + (b[0] - a[0]) * a[1] / (a[1] - b[1]) for a, b in zip(gaps[1:], gaps[2:]) if a[1] * b[1] < 0]
+stiff = math.sqrt(2 * 6e6 * 1e-3 / 0.01 / 0.5)
+assert abs(turns[0] / (math.pi / (math.sqrt(0.2) * stiff)) - 1) < 1e-4, turns
+assert abs((turns[1] - turns[0]) / (math.pi / stiff) - 1) < 1e-4, turns
+names, rows = table("two/series/energies.csv")
+total = names.index("energy_total [J]")
+assert max(abs(row[total] / rows[0][total] - 1) for row in rows) < 1e-4
 
 # Stokes: v = -m g/c (1 - exp(-t/tau)), c = 6 pi eta r, tau = m/c; the spin decays with 8 pi eta r^3 / (2/5 m r^2).
 eta, r, g = 0.5, 0.01, 9.81

@@ -34,10 +34,9 @@ static inline double body_value(const pls_world *world, const char *field, size_
     pls_field_view view;
     size_t count;
     assert_int_equal(pls_world_body_field(world, field, &view), PLS_OK);
-    assert_int_equal(view.type, PLS_F64);
     const uint32_t *rows = pls_world_rows_by_number(world, &count);
     assert_true(number < count);
-    return ((const double *)(const void *)((const char *)view.data + rows[number] * view.stride))[c];
+    return pls_field_value(&view, rows[number], c);
 }
 
 #define SCENE_HEAD "particls: 1\nmaterials: {grain: {density: 1000}}\nshapes: {ball: {sphere: {radius: 0.1}}, wall: {plane: {}}}\n"

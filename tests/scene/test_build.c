@@ -290,10 +290,77 @@ static void building_survives_allocation_failures(void **state)
     failing_allocator_remove();
 }
 
+// ---- continua ---------------------------------------------------------------------------------------------------------------------------------------------
+
+#define PLATE                                                                                                 \
+    "particls: 1\nmaterials: {solid: {density: 2000, young_modulus: 1.0e7, poisson_ratio: 0.25}}\n"           \
+    "shapes: {plate: {box: {half: [0.5, 0.1, 0.1]}}, point: {sphere: {radius: 0.02}}}\n"                      \
+    "bodies: [{name: plate, shape: point, material: solid, place: {fill: {region: plate, spacing: 0.05}}}]\n" \
+    "contact: [{between: all, law: elastic, kn: 100}]\n"
+
+/// Sum of a component of the forces on all bodies.
+static double sum_of_forces(const pls_world *world, int component)
+{
+    double sum = 0.0;
+    for (uint32_t n = 0; n < pls_world_body_count(world); ++n) sum += body_value(world, "force", n, component);
+    return sum;
+}
+
+static void loads_on_faces_are_shared_by_mass(void **state)
+{
+    (void)state;
+    job j = start(PLATE "forces:\n  - {traction: {value: [\"3*(1 + t)\", -2, \"x\"], area: 0.04, where: \"x > 0.45\"}}\n"
+                        "  - {pressure: {value: 5, normal: [0, 2, 0], area: 0.2, where: \"y > 0.05\"}}\ntime: {end: 1, dt: 1.0e-4}\n");
+    // The layer at x = 0.475 has 4 x 4 points; that at y = 0.075 has 20 x 4.
+    assert_near(sum_of_forces(j.world, 0), 0.04 * 3.0, 1e-14);
+    assert_near(sum_of_forces(j.world, 1), -0.04 * 2.0 - 0.2 * 5.0, 1e-14);
+    assert_near(sum_of_forces(j.world, 2), 0.04 * 0.475, 1e-14);
+    assert_near(body_value(j.world, "force", 19, 0), 0.04 * 3.0 / 16.0, 1e-15); // x fastest
+    assert_near(body_value(j.world, "force", 18, 0), 0.0, 1e-13);               // but for contacts: neighbours touch to rounding
+    run(&j, 100);
+    assert_near(sum_of_forces(j.world, 0), 0.04 * 3.0 * 1.01, 1e-13);
+    stop(&j);
+}
+
+static void fields_by_volume(void **state)
+{
+    (void)state;
+    job j = start(PLATE "forces: [{field: {density: [\"10*x\", 0, 4], where: \"x > 0\"}}]\ntime: {end: 1, dt: 1.0e-4}\n");
+    const double volume = 0.05 * 0.05 * 0.05;
+    assert_near(body_value(j.world, "force", 19, 0), 10.0 * 0.475 * volume, 1e-16);
+    assert_near(body_value(j.world, "force", 19, 2), 4.0 * volume, 1e-16);
+    assert_near(body_value(j.world, "force", 0, 2), 0.0, 1e-13);
+    stop(&j);
+}
+
+/// Heat by expressions: what is held, what is put in, what it starts from; a free plate grows.
+static void heat_by_expressions(void **state)
+{
+    (void)state;
+    job j =
+        start("particls: 1\nvars: {temperature: 7}\nmaterials: {solid: {density: 2000, young_modulus: 1.0e7, poisson_ratio: 0.25}}\n"
+              "shapes: {plate: {box: {half: [0.5, 0.1, 0.1]}}, point: {sphere: {radius: 0.02}}}\n"
+              "bodies: [{name: plate, shape: point, material: solid, place: {fill: {region: plate, spacing: 0.05}}}]\n"
+              "contact: [{between: all, law: elastic, kn: 100}]\n"
+              "bonds:\n  - of: [plate]\n    law: linear_solid\n    horizon: 0.151\n    heat:\n      conductivity: 0\n      capacity: 500\n"
+              "      expansion: 1.0e-5\n      initial: \"300 + x\"\n      source: \"x > 0 ? 1.0e6*(1 + 0*temperature) : 0\"\n"
+              "      held: [{temperature: \"250 + t\", where: \"x < -0.4\"}]\ntime: {end: 1, dt: 1.0e-4}\n");
+    run(&j, 100);
+    assert_near(body_value(j.world, "temperature", 0, 0), 250.01, 1e-12);
+    assert_near(body_value(j.world, "temperature", 5, 0), 300.0 - 0.225, 1e-12);
+    assert_near(body_value(j.world, "temperature", 19, 0), 300.475 + 1e6 / (2000.0 * 500.0) * 0.01, 1e-10);
+    assert_true(isnan(body_value(j.world, "plastic_strain", 0, 0)));
+    assert_near(body_value(j.world, "fragment", 319, 0), 0.0, 0.0);
+    stop(&j);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bodies_are_numbered_in_the_order_of_entries),
+        cmocka_unit_test(loads_on_faces_are_shared_by_mass),
+        cmocka_unit_test(fields_by_volume),
+        cmocka_unit_test(heat_by_expressions),
         cmocka_unit_test(a_mass_alone_gives_the_inertia_of_a_uniform_body),
         cmocka_unit_test(normals_turn_the_plane_onto_them),
         cmocka_unit_test(a_displacement_is_followed_to_round_off),

@@ -141,7 +141,7 @@ static void the_used_scene_has_values_in_place_of_expressions_and_defaults(void 
     assert_non_null(strstr(text, "vars: {kn: 100000, ks: 50000, omega: 6.283185307179586}"));
     assert_non_null(strstr(text, "law: viscoelastic, lever: contact_point, solver: depth, faces: auto, tolerance: "));
     assert_non_null(strstr(text, "kn: 100000, ks: 50000, cn: 1"));
-    assert_non_null(strstr(text, "time: {end: 1, dt: auto, safety: 0.5, allow_unstable: false}"));
+    assert_non_null(strstr(text, "time: {end: 1, dt: auto, safety: 0.5, allow_unstable: false, local_damping: 0, relaxation: none}"));
     assert_non_null(strstr(text, "neighbours: {skin: auto, reorder: true}"));
     assert_non_null(strstr(text, "density: \"1000*(1 + 0.1*T)\""));
     assert_non_null(strstr(text, "angle: 0.7853981633974483"));

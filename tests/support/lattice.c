@@ -22,6 +22,7 @@ lattice_plan lattice_default(int dimension, size_t side)
                           .critical_stretch = INFINITY,
                           .law = "linear_solid",
                           .contact_stiffness = 1.0,
+                          .heat = {.conductivity = NAN},
                           .dt = 1e-3};
 }
 
@@ -43,8 +44,14 @@ static void join(lattice *b)
     def.correction = b->plan.correction;
     def.plane = b->plan.plane;
     def.critical_stretch = b->plan.critical_stretch;
+    if (b->plan.fracture_energy > 0.0) def.fracture_energy = b->plan.fracture_energy;
+    def.fracture = b->plan.fracture;
+    def.condition = b->plan.condition;
+    def.condition_changes = b->plan.condition_changes;
+    def.user = b->plan.user;
+    def.heat = b->plan.heat;
     const double beam[] = {0.4 * b->plan.spacing, 0.1 * b->plan.bulk, 0.1 * b->plan.bulk}; // radius and strengths
-    if (def.ops->pair) def.values = beam;
+    def.values = def.ops->pair ? beam : b->plan.values;
     MUST(pls_world_add_bonds(b->scene.world, &def, &b->bonds));
 }
 
@@ -117,9 +124,9 @@ void lattice_deform(lattice *b, pls_vec3 (*map)(pls_vec3 X, const void *context)
         pls_body_place *place = &w->bodies.place[pls_body_row(w, b->body[p])];
         place->x = x.x, place->y = x.y, place->z = x.z;
     }
-    pls_bonds_place(w, 0, 1);
+    MUST(pls_bonds_place(w, 0.0, 0, 1));
     pls_bonds_placed(w);
-    pls_bonds_dilate(w, 0, 1);
+    MUST(pls_bonds_dilate(w, 0.0, 0, 1));
     pls_bonds_dilated(w);
     pls_bonds_act(w, 0, 1);
 }

@@ -19,11 +19,18 @@ typedef struct lattice_plan
     pls_correction correction;
     double critical_stretch;
     const char *law;          ///< of bonds
+    double values[2];         ///< of its parameters, but for beams
     bool periodic;            ///< along all axes
     double contact_stiffness; ///< kn of points that touch [N/m]
     double dt;                ///< [s]
     double stiffer;           ///< of the half with the larger x: its moduli by those of the other. 0: all alike
-    double lighter;           ///< of the first layer along x: its points' masses by those of others. 0: all alike
+    double fracture_energy;   ///< 0: not given
+    pls_fracture fracture;
+    pls_point_condition *condition; ///< as in pls_bonds_def
+    bool condition_changes;
+    void *user;
+    pls_heat_def heat;
+    double lighter; ///< of the first layer along x: its points' masses by those of others. 0: all alike
 } lattice_plan;
 
 typedef struct lattice

@@ -66,6 +66,11 @@ const verify_entry verify_cases[] = {
     {"bond-dispersion", "Waves in a linear peridynamic solid against the exact dispersion of the lattice", case_bond_dispersion},
     {"bond-shear", "Shear of a linear peridynamic solid against the lattice's own sum", case_bond_shear},
     {"bond-bar", "A bar of a linear peridynamic solid in tension", case_bond_bar},
+    {"hole", "A plate with a hole against Kirsch's solution", case_hole},
+    {"bond-orders", "Orders of convergence of a linear peridynamic solid", case_bond_orders},
+    {"bond-energy", "Energy and momenta of peridynamic solids over many steps", case_bond_energy},
+    {"kalthoff", "Cracks from two notches under an impact", case_kalthoff},
+    {"branching", "A crack that branches", case_branching},
     {NULL, NULL, NULL},
 };
 

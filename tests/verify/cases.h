@@ -82,6 +82,7 @@ verify_case case_hertz_force, case_hertz_collision, case_mindlin;
 verify_case case_dilating, case_logistic;
 verify_case case_periodic_collision, case_periodic_momentum, case_stretching_chain;
 verify_case case_bond_dispersion, case_bond_shear, case_bond_bar;
+verify_case case_hole, case_bond_orders, case_bond_energy, case_kalthoff, case_branching;
 verify_case case_step_estimate_pair, case_step_estimate_packing, case_step_refused;
 
 #endif
