@@ -88,8 +88,8 @@ typedef struct pls_pair_stiffness
 
 /// The family of one point, for a state-based law that linear coefficients cannot say: what remembers, what yields, what is not linear. The law gives the energy E of the family and its derivatives by
 /// the extensions; the set adds up forces, those of a bond from both of its families. Arrays hold `count` values, a multiple of 8, are 64-byte aligned and do not overlap. Bonds that broke, and lanes that
-/// fill up, weigh nothing and have extension 0. With the weights the weighted volume of the undamaged family and the dilatation are
-///     m = sum weight reference / volume,     theta = dimension / (m volume) sum weight extension.
+/// fill up, weigh nothing and have extension 0. With the weights of a family that is whole and not corrected, m = sum weight reference / volume; the dilatation is
+/// theta = dimension / (m volume) sum weight extension with the m of the family as it was made.
 typedef struct pls_family_batch
 {
     size_t count;
@@ -103,10 +103,12 @@ typedef struct pls_family_batch
     const double *correction; ///< of surfaces: times the stiffness against extension; 1 without
     double *const *memory;    ///< in, and out of `advance`: numbers per bond, zero at first
     double *point_memory;     ///< likewise: of the point
-    double step;              ///< of `advance`: since the last time [s]
-    double *tension;          ///< out of `pull`: dE/d extension per bond [N]
-    double *energy;           ///< out of `pull`: E [J]
-    double *spent;            ///< out of `advance`: what the step took, in heat [J]
+    double
+        stiffness; ///< what the set multiplies energy, tensions and `spent` by (pls_point_condition), for laws that know stresses of their own: a yield stress is to be taken by it
+    double step;   ///< of `advance`: since the last time [s]
+    double *tension; ///< out of `pull`: dE/d extension per bond [N]
+    double *energy;  ///< out of `pull`: E [J]
+    double *spent;   ///< out of `advance`: what the step took, in heat [J]
 } pls_family_batch;
 
 /// A bond law: `linear`, alone or with `pull`, or `pair`, and what goes with it.
@@ -147,7 +149,7 @@ typedef struct pls_point_batch
     const double *temperature; ///< of sets with heat [K], else 0
 } pls_point_batch;
 
-/// How stiff points are and what they withstand, by the moduli of their material and by what the set's bonds withstand: both are to be set, > 0. A bond has the mean of its two points. Called from several
+/// How stiff points are and what they withstand, by the moduli of their material and by what the set's bonds withstand: both are to be set, > 0. A bond of a linear law has the mean of its two points; of a family law each family its own point's stiffness. Called from several
 /// threads at once.
 typedef pls_status pls_point_condition(void *context, const pls_point_batch *points, double *stiffness, double *toughness);
 /// A value per point: a temperature [K] or a source of heat [W/m^3]. Called from several threads at once.

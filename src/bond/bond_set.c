@@ -462,16 +462,16 @@ static double mean_of(const pls_bond_set *set, size_t point, size_t slot, int co
     return 0.5 * (row[set->family.partner[slot]][column] + row[point][column]);
 }
 
-static double own_stiffness(const pls_bond_set *set, size_t point)
-{
-    return set->conditions.row ? set->conditions.row[point][PLS_CONDITION_STIFFNESS] : 1.0;
-}
-
 /// What a bond is longer by than its reference length and temperature make it.
 static double extension_now(const pls_bond_set *set, size_t point, size_t slot)
 {
     const double xi = fabs(set->family.length[slot]);
     return length_of(set, point, slot) - xi - xi * mean_of(set, point, slot, PLS_CONDITION_STRAIN);
+}
+
+static double own_stiffness(const pls_bond_set *set, size_t point)
+{
+    return set->conditions.row ? set->conditions.row[point][PLS_CONDITION_STIFFNESS] : 1.0;
 }
 
 /// What the law of a point is asked with. `memory`: of as many pointers.
@@ -493,6 +493,7 @@ static pls_family_batch batch_of(const pls_bond_set *set, size_t p, double step,
                               .correction = states->correction + first,
                               .memory = memory,
                               .point_memory = states->of_point[p],
+                              .stiffness = own_stiffness(set, p),
                               .step = step,
                               .tension = states->tension + first,
                               .energy = energy,

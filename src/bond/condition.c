@@ -13,6 +13,7 @@
 #include <string.h>
 
 enum { BATCH = 32 };
+static const double no_temperature = 1e12; ///< [K]: hotter than anything that is simulated
 
 void pls_conditions_free(pls_conditions *c)
 {
@@ -114,6 +115,11 @@ pls_status pls_conditions_take(pls_conditions *c, const pls_families *family, si
         {
             double *w = c->warmth[p];
             w[PLS_HEAT_TEMPERATURE] += dt * (1.5 * w[PLS_HEAT_RATE] - 0.5 * w[PLS_HEAT_BEFORE]);
+            if (!(fabs(w[PLS_HEAT_TEMPERATURE]) < no_temperature))
+                return pls_fail(PLS_UNSTABLE_STEP,
+                                "the temperature of body %u is %g K at t = %g s: the time step of %g s is too long for what is conducted "
+                                "and put in there; take a smaller dt",
+                                family->point[p].number, w[PLS_HEAT_TEMPERATURE], time, dt);
         }
         if (c->warmth && c->heat.held) PLS_TRY(hold(c, family, begin, count, time));
         for (size_t p = begin; c->warmth && p < begin + count; ++p) expand(c, p);
@@ -124,6 +130,8 @@ pls_status pls_conditions_take(pls_conditions *c, const pls_families *family, si
 
 void pls_conditions_taken(pls_conditions *c, const pls_families *family)
 {
+    if (c->known && !c->changes && !c->warmth) return;
+    c->known = true;
     double stiffest = 0.0;
     for (size_t p = 0; p < family->count; ++p) stiffest = fmax(stiffest, c->row[p][PLS_CONDITION_STIFFNESS]);
     c->stiffest = stiffest;
@@ -169,6 +177,28 @@ static pls_status check_heat(const pls_bonds_def *def)
     return PLS_OK;
 }
 
+/// By how much a source falls per kelvin at the start, by the heat capacity: it cools as conduction does.
+static pls_status find_loss(pls_conditions *c, const pls_families *family, double time)
+{
+    double fastest = 0.0;
+    for (size_t p = 0; c->heat.source && p < family->count; p += BATCH)
+    {
+        const size_t count = family->count - p < BATCH ? family->count - p : BATCH;
+        double now[BATCH], warmer[BATCH], own[BATCH];
+        PLS_TRY(ask_values(c, family, c->heat.source, p, count, time, false, "source of heat", now));
+        for (size_t k = 0; k < count; ++k) own[k] = c->warmth[p + k][PLS_HEAT_TEMPERATURE], c->warmth[p + k][PLS_HEAT_TEMPERATURE] += 1.0;
+        const pls_status status = ask_values(c, family, c->heat.source, p, count, time, false, "source of heat", warmer);
+        for (size_t k = 0; k < count; ++k)
+        {
+            c->warmth[p + k][PLS_HEAT_TEMPERATURE] = own[k];
+            fastest = fmax(fastest, (now[k] - warmer[k]) * family->point[p + k].volume / c->capacity[p + k]);
+        }
+        PLS_TRY(status);
+    }
+    c->fastest += fastest;
+    return PLS_OK;
+}
+
 static pls_status make_heat(pls_conditions *c, const pls_bonds_def *def, const pls_families *family, const pls_heat_material *material,
                             const uint16_t *material_of, double time)
 {
@@ -185,13 +215,17 @@ static pls_status make_heat(pls_conditions *c, const pls_bonds_def *def, const p
         double sum = 0.0;
         for (size_t k = 0; k < family->size[p]; ++k) sum += c->conduction[slot + k] *= def->heat.conductivity;
         c->capacity[p] = m->density * family->point[p].volume * def->heat.capacity;
-        c->expansion[p] = m->expansion * def->heat.expansion;
+        c->expansion[p] = def->heat.expansion == 0.0 ? 0.0 : m->expansion * def->heat.expansion;
+        if (isnan(c->expansion[p]))
+            return pls_fail(PLS_INVALID_ARGUMENT,
+                            "the thermal expansion in plane strain needs the poisson_ratio of the material of body %u",
+                            family->point[p].number);
         c->fastest = fmax(c->fastest, 2.0 * sum / c->capacity[p]);
     }
     for (size_t p = 0; p < family->count; p += BATCH)
     {
         const size_t count = family->count - p < BATCH ? family->count - p : BATCH;
-        double value[BATCH] = {0};
+        double value[BATCH] = {0}; // temperatures
         if (def->heat.initial) PLS_TRY(ask_values(c, family, def->heat.initial, p, count, time, false, "temperature at the start", value));
         for (size_t k = 0; k < count; ++k)
         {
@@ -199,7 +233,7 @@ static pls_status make_heat(pls_conditions *c, const pls_bonds_def *def, const p
             c->reference[p + k] = isnan(def->heat.reference) ? value[k] : def->heat.reference;
         }
     }
-    return PLS_OK;
+    return find_loss(c, family, time);
 }
 
 static pls_status make(pls_conditions *c, const pls_bonds_def *def, const pls_families *family, const pls_heat_material *material,

@@ -21,13 +21,15 @@ typedef struct pls_conditions
     double *chance;                       ///< per point
     pls_point_condition *function;
     bool changes;    ///< it is asked in every step
+    bool known;      ///< rows of ghosts and the largest stiffness have been found once
     double stiffest; ///< largest stiffness of a point now
     pls_heat_def heat;
     double (*warmth)[PLS_HEAT_NUMBERS]; ///< per point; null: the set has no heat
     double *conduction;                 ///< per bond [W/K]
     double *capacity, *expansion;       ///< per point [J/K], [1/K]
     double *reference;                  ///< per point [K]
-    double fastest;                     ///< bound of the largest eigenvalue of conduction [1/s]
+    double
+        fastest; ///< bound of the largest rate at which differences of temperature decay, by conduction and by sources as they are at the start [1/s]
     void *user;
     void (*release)(void *user);
 } pls_conditions;

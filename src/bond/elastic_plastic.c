@@ -4,8 +4,8 @@
 //
 //     E/V = a theta^2 / (2 d) + b / (2 m) sum w beta V_j (e - p)^2
 //
-// The deviator e' = e - theta xi / d stores W = b / (2 m) sum w beta V_j (e' - p)^2, in a uniform deformation q^2 / (6 mu) with the equivalent stress q. Where q of the trial exceeds the yield
-// stress Y it comes back radially: the strain grows by D = (q - Y) / (3 mu + H), p by the part 3 mu D / q of e' - p, and the step takes V (Y + H D / 2) D.
+// The deviator e' = e - xi (sum g e / sum g xi), in a whole family e - theta xi / d, stores W = b / (2 m) sum w beta V_j (e' - p)^2, in a uniform deformation q^2 / (6 mu) with the equivalent stress q. Where q of the trial exceeds the yield
+// stress Y it comes back radially: the strain grows by D = (q - Y) / (3 mu + H), p by the part 3 mu D / q of e' - p, and the step takes the mean tension times that, in a whole family V (Y + H D / 2) D.
 //
 // In the plane (strain) e' is the deviator of the plane: flow begins, and goes on, at a shear stress of Y / sqrt 3, von Mises' once the flow out of the plane has ceased.
 
@@ -52,7 +52,9 @@ static pls_status prepare(const double *values, const pls_bond_setting *setting,
     constants[PLS_PLASTIC_SHEAR] = m.shear;
     constants[PLS_PLASTIC_YIELD] = values[YIELD];
     constants[PLS_PLASTIC_HARDENING] = values[HARDENING];
-    return PLS_OK;
+    return isfinite(values[YIELD] + values[HARDENING])
+               ? PLS_OK
+               : pls_fail(PLS_INVALID_ARGUMENT, "elastic_plastic: yield_stress and hardening must be finite");
 }
 
 static void pull(const pls_family_batch *batch) { PLS_SIMD_SELECT(pls_plastic_pull)(batch); }
@@ -68,5 +70,5 @@ const pls_bond_ops pls_elastic_plastic_bonds = {
     .pull = pull,
     .advance = advance,
     .memories = 1,
-    .point_memories = 1,
+    .point_memories = PLS_PLASTIC_POINT_MEMORIES,
 };

@@ -14,6 +14,9 @@ enum {
     PLS_PLASTIC_HARDENING  ///< [Pa]
 };
 
+/// Remembered per point: equivalent plastic strain, even part of the extensions at the last step.
+enum { PLS_PLASTIC_STRAIN, PLS_PLASTIC_MEAN, PLS_PLASTIC_POINT_MEMORIES };
+
 PLS_SIMD_DECLARE(void, pls_plastic_pull, const pls_family_batch *batch);
 PLS_SIMD_DECLARE(void, pls_plastic_advance, const pls_family_batch *batch);
 

@@ -51,10 +51,12 @@ static inline __attribute__((always_inline)) void look(const pls_bond_set *set, 
     }
 }
 
-/// Tougher bonds carry less of what they can.
+/// Of what bonds can carry, a critical stretch counts like a strength; tougher bonds carry less of it.
 static void toughen(const pls_bond_set *set, size_t own, size_t slot, size_t k, pls_link_work *work)
 {
     const double(*rows)[PLS_CONDITION_NUMBERS] = (const double(*)[PLS_CONDITION_NUMBERS])set->conditions.row;
+    for (size_t lane = 0; lane < PLS_BOND_VECTOR; ++lane)
+        work->load[k + lane] = fmax(work->load[k + lane], (work->length[k + lane] / work->reference[k + lane] - 1.0) / set->stretch);
     for (size_t lane = 0; rows && lane < PLS_BOND_VECTOR; ++lane)
         work->load[k + lane] /=
             0.5 * (rows[own][PLS_CONDITION_TOUGHNESS] + rows[set->family.partner[slot + lane]][PLS_CONDITION_TOUGHNESS]);
@@ -78,7 +80,7 @@ typedef struct sums
 } sums;
 
 /// Bonds that hold count.
-static inline __attribute__((always_inline)) void add(const pls_link_work *work, size_t k, double stretch, sums *s)
+static inline __attribute__((always_inline)) void add(const pls_link_work *work, size_t k, sums *s)
 {
     const pls_vd none = pls_vd_set(0.0), most = pls_vd_set(0.5 * PLS_NO_LENGTH), one = pls_vd_set(1.0);
 #pragma GCC unroll 4
@@ -93,7 +95,6 @@ static inline __attribute__((always_inline)) void add(const pls_link_work *work,
             s->part[3 + c][part] = s->part[3 + c][part] + pls_vd_choose(held, pls_vd_load(&work->torque[c][at]), none);
         }
         s->overlong |= ~pls_vd_less(pls_vd_choose(held, load, none), one) & ((1u << PLS_W) - 1);
-        s->overlong |= pls_vd_less(stretch * reference, pls_vd_load(&work->length[at]) - reference);
     }
 }
 
@@ -117,7 +118,7 @@ bool PLS_SIMD(pls_link_act)(pls_bond_set *set, size_t first, size_t last)
         for (; vector < end; ++vector)
         {
             toughen(set, p, vector * PLS_BOND_VECTOR, (vector - begin) * PLS_BOND_VECTOR, &work);
-            add(&work, (vector - begin) * PLS_BOND_VECTOR, set->stretch, &s);
+            add(&work, (vector - begin) * PLS_BOND_VECTOR, &s);
             if (vector + 1 < start[p + 1]) continue;
             for (int c = 0; c < 3; ++c) set->force[p][c] = pls_lanes_sum(s.part[c]), set->torque[p][c] = pls_lanes_sum(s.part[3 + c]);
             if (s.overlong) set->overlong[p] = 1, any = true;

@@ -2,7 +2,7 @@
 //
 // Each bond remembers the extension p of the branch's dashpot, which has no dilatation. With the linear solid's a and b and the part l of b that relaxes in the time tau
 //
-//     E/V = a theta^2 / (2 d) + b / (2 m) sum w beta V_j [(1 - l) e^2 + l (e - p)^2],      p' = (e' - p) / tau,   e' = e - theta xi / d
+//     E/V = a theta^2 / (2 d) + b / (2 m) sum w beta V_j [(1 - l) e^2 + l (e - p)^2],      p' = (e' - p) / tau,   e' = e - xi (sum g e / sum g xi)
 //
 // p is advanced exactly for e' that grows evenly during the step.
 
@@ -58,4 +58,5 @@ const pls_bond_ops pls_viscoelastic_bonds = {
     .pull = pull,
     .advance = advance,
     .memories = PLS_VISCOUS_MEMORIES,
+    .point_memories = 1, // even part of the extensions at the last step
 };

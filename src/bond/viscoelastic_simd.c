@@ -25,17 +25,19 @@ void PLS_SIMD(pls_viscous_pull)(const pls_family_batch *batch)
 void PLS_SIMD(pls_viscous_advance)(const pls_family_batch *batch)
 {
     const double b = batch->constants[PLS_VISCOUS_EXTENSION] / batch->weighted, relaxing = batch->constants[PLS_VISCOUS_PART],
-                 third = pls_family_dilatation(batch) / (double)batch->dimension;
-    const double time = batch->step / batch->constants[PLS_VISCOUS_TIME], left = exp(-time), kept = -expm1(-time) / time;
+                 mean = pls_family_mean(batch), even = 0.5 * (mean + batch->point_memory[0]);
+    const double time = batch->step / batch->constants[PLS_VISCOUS_TIME], left = exp(-time), kept = time > 0.0 ? -expm1(-time) / time : 1.0;
     double *dashpot = batch->memory[PLS_VISCOUS_DASHPOT], *before = batch->memory[PLS_VISCOUS_DEVIATOR];
     pls_vd sum[PLS_FAMILY_PARTS] = {0};
+    batch->point_memory[0] = mean;
     for (size_t k = 0; k < batch->count; k += PLS_BOND_VECTOR)
         for (size_t part = 0; part < PLS_FAMILY_PARTS; ++part)
         {
             const size_t at = k + part * PLS_W;
-            const pls_vd now = pls_family_deviator(batch, at, third), then = pls_vd_load(before + at), p = pls_vd_load(dashpot + at);
+            const pls_vd now = pls_family_deviator(batch, at, mean), then = pls_vd_load(before + at), p = pls_vd_load(dashpot + at);
             const pls_vd spring = then - p, sprung = left * spring + kept * (now - then), moved = now - sprung - p;
-            sum[part] = sum[part] + pls_family_stiffness(batch, at) * (0.5 * (spring + sprung)) * moved;
+            const pls_vd elastic = 0.5 * (spring + sprung) + even * pls_vd_load(batch->reference + at);
+            sum[part] = sum[part] + pls_family_stiffness(batch, at) * elastic * moved;
             pls_vd_store(dashpot + at, now - sprung);
             pls_vd_store(before + at, now);
         }

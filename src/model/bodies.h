@@ -114,7 +114,8 @@ enum pls_body_flags {
       "unit quaternion w x y z, principal axes of the shape to world")                                                           \
     X("force", PLS_F64, 3, PERSISTS | FRAME, "N", load, pls_body_load, fx, "contact and body forces")                            \
     X("torque", PLS_F64, 3, PERSISTS | FRAME, "N m", load, pls_body_load, tx, "torque about the centre of mass")                 \
-    X("energy_damped", PLS_F64, 1, PERSISTS, "J", damped, double, , "half of the energy taken by its contacts' dashpots")        \
+    X("energy_damped", PLS_F64, 1, PERSISTS, "J", damped, double, ,                                                              \
+      "half of the energy taken by its contacts' dashpots; what its bonds and damping took")                                     \
     X("damping_power", PLS_F64, 1, PERSISTS, "W", damping_power, double, , "half of the power taken by its contacts' dashpots")  \
     X("force_before", PLS_F32, 3, PERSISTS, "N", before, pls_body_before, fx, "force one step earlier")                          \
     X("torque_before", PLS_F32, 3, PERSISTS, "N m", before, pls_body_before, tx, "torque one step earlier")                      \

@@ -16,7 +16,8 @@ typedef struct force_field
     pls_formula *force; ///< three components
     pls_formula *where; ///< null: everywhere
     measure by;
-    double *density; ///< of each body, by number, for BY_VOLUME [kg/m^3]
+    double *density; ///< of each body of the scene, by number, for BY_VOLUME [kg/m^3]
+    size_t bodies;
 } force_field;
 
 static pls_status add_field(const force_field *field, const pls_force_batch *batch, pls_formula_copy *force, pls_formula_copy *where)
@@ -24,6 +25,9 @@ static pls_status add_field(const force_field *field, const pls_force_batch *bat
     for (size_t k = 0; k < batch->count; ++k)
     {
         if (isinf(batch->mass[k])) continue;
+        if (field->by == BY_VOLUME && batch->body[k] >= field->bodies)
+            return pls_fail(PLS_INVALID_ARGUMENT, "a field by volume acts on body %u, which is not of the scene: its volume is not known",
+                            batch->body[k]);
         double at[] = {batch->time,  batch->x[k],  batch->y[k],      batch->z[k],   batch->vx[k],
                        batch->vy[k], batch->vz[k], batch->radius[k], batch->mass[k]};
         double inside = 1.0, f[3];
@@ -71,19 +75,20 @@ static const pls_force_ops field_ops = {
 };
 
 /// Densities of the materials of all bodies, by number.
-static pls_status find_densities(const pls_builder *b, const pls_node *field, double **density)
+static pls_status find_densities(const pls_builder *b, const pls_node *node, force_field *field)
 {
-    PLS_TRY(pls_allocate(density, b->total, sizeof **density, "densities of bodies"));
-    const char *only = pls_node_get(field, "bodies")->text;
+    PLS_TRY(pls_allocate(&field->density, b->total, sizeof *field->density, "densities of bodies"));
+    field->bodies = b->total;
+    const char *only = pls_node_get(node, "bodies")->text;
     for (size_t entry = 0; entry < b->scene->body_count; ++entry)
     {
         double value;
         PLS_TRY(pls_build_density(b, entry, &value));
         const bool acts = strcmp(only, "all") == 0 || strcmp(only, b->scene->bodies[entry].name) == 0;
         if (acts && isnan(value) && !pls_scene_choice_shape(b->scene, &b->scene->bodies[entry], 0)->ops->unbounded)
-            return pls_node_fail(pls_node_get(field, "density"), "give the material a density, or the field `force` or `acceleration`",
+            return pls_node_fail(pls_node_get(node, "density"), "give the material a density, or the field `force` or `acceleration`",
                                  "the body '%s' has no volume: its material has no density", b->scene->bodies[entry].name);
-        for (size_t k = 0; k < b->points[entry].count; ++k) (*density)[b->ids[b->first_body[entry] + k].index1 - 1] = value;
+        for (size_t k = 0; k < b->points[entry].count; ++k) field->density[b->ids[b->first_body[entry] + k].index1 - 1] = value;
     }
     return PLS_OK;
 }
@@ -94,7 +99,7 @@ static pls_status make_field(const pls_builder *b, const pls_node *node, force_f
     const pls_node *force = NULL, *where = pls_node_get(node, "where");
     for (measure by = BY_BODY; by <= BY_VOLUME; ++by)
         if (pls_node_get(node, keys_of[by])) field->by = by, force = pls_node_get(node, keys_of[by]);
-    if (field->by == BY_VOLUME) PLS_TRY(find_densities(b, node, &field->density));
+    if (field->by == BY_VOLUME) PLS_TRY(find_densities(b, node, field));
     size_t count;
     unsigned uses = 0;
     const pls_key *keys = pls_schema_keys("field", &count);
@@ -141,7 +146,17 @@ typedef struct face_load
 {
     pls_formula *value; ///< three components [Pa]
     double *area;       ///< of each body, by number [m^2]; 0: it was not chosen
+    pls_body_id *body;  ///< likewise: another one may get the number
+    size_t bodies;
+    const pls_world *world;
 } face_load;
+
+static double area_of(const face_load *face, uint32_t number)
+{
+    pls_body_motion motion;
+    if (number >= face->bodies || !(face->area[number] > 0.0)) return 0.0;
+    return pls_body_get(face->world, face->body[number], &motion) == PLS_OK ? face->area[number] : 0.0;
+}
 
 static pls_status face_evaluate(void *context, const pls_force_batch *batch)
 {
@@ -151,7 +166,7 @@ static pls_status face_evaluate(void *context, const pls_force_batch *batch)
     pls_status status = PLS_OK;
     for (size_t k = 0; status == PLS_OK && k < batch->count; ++k)
     {
-        const double area = face->area[batch->body[k]], at[] = {batch->time, batch->x[k], batch->y[k], batch->z[k]};
+        const double area = area_of(face, batch->body[k]), at[] = {batch->time, batch->x[k], batch->y[k], batch->z[k]};
         double f[3];
         if (!(area > 0.0)) continue;
         status = pls_formula_values(face->value, copy, at, f);
@@ -170,6 +185,7 @@ static void face_destroy(void *context)
     if (!face) return;
     pls_formula_drop(face->value);
     pls_release(&face->area);
+    pls_release(&face->body);
     pls_release(&face);
 }
 
@@ -198,6 +214,9 @@ static pls_status share_area(const pls_builder *b, const pls_node *node, pls_for
 {
     double mass = 0.0;
     PLS_TRY(pls_allocate(&face->area, b->total, sizeof *face->area, "a load on a face"));
+    PLS_TRY(pls_allocate(&face->body, b->total, sizeof *face->body, "a load on a face"));
+    face->bodies = b->total;
+    face->world = b->world;
     for (size_t entry = 0; entry < b->scene->body_count; ++entry)
         for (size_t k = 0; k < b->points[entry].count; ++k)
         {
@@ -208,6 +227,7 @@ static pls_status share_area(const pls_builder *b, const pls_node *node, pls_for
             if (!chosen) continue;
             PLS_TRY(pls_body_get(b->world, id, &motion));
             face->area[id.index1 - 1] = motion.mass;
+            face->body[id.index1 - 1] = id;
             mass += motion.mass;
         }
     if (!(mass > 0.0) || !isfinite(mass))
@@ -218,12 +238,11 @@ static pls_status share_area(const pls_builder *b, const pls_node *node, pls_for
 }
 
 /// Components of the force per area: a vector, or a pressure against the outward normal.
-static pls_status make_value(const pls_builder *b, const pls_node *node, const pls_symbols *symbols, pls_formula **formula)
+static pls_status make_value(const pls_node *node, const pls_symbols *symbols, pls_formula **formula)
 {
     const pls_node *vector = pls_node_get(node, "value"), *normal = pls_node_get(node, "normal");
     char number[3][32], product[3][PLS_EXPRESSION_SIZE];
     const char *texts[3];
-    (void)b;
     for (size_t c = 0; !normal && c < 3; ++c) texts[c] = pls_build_component(vector, c, number[c]);
     if (normal)
     {
@@ -248,7 +267,7 @@ static pls_status make_face(const pls_builder *b, const pls_node *node, face_loa
     pls_symbols symbols;
     pls_formula *choose = NULL;
     PLS_TRY(pls_scene_symbols(b->scene, PLS_USES_TIME | PLS_USES_PLACE, NULL, names, &symbols));
-    PLS_TRY(make_value(b, node, &symbols, &face->value));
+    PLS_TRY(make_value(node, &symbols, &face->value));
     if (where) PLS_TRY(pls_formula_make(&where->text, 1, &symbols, &choose));
     const pls_status status = share_area(b, node, choose, face);
     pls_formula_drop(choose);

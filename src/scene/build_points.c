@@ -129,6 +129,8 @@ static pls_status make_condition(const pls_builder *b, const pls_node *bonds, po
     if (pls_node_get(bonds, "stiffness"))
         texts[0] = pls_build_component(pls_node_get(bonds, "stiffness"), 0, number[0]); // of beams there is none
     PLS_TRY(make(b, texts, 2, &p->condition));
+    if (pls_formula_uses(p->condition, TEMPERATURE) && !pls_node_get(bonds, "heat"))
+        return pls_node_fail(bonds, "give the entry `heat`", "'stiffness' or 'toughness' names the temperature, but these bonds have none");
     def->condition = ask_condition;
     def->condition_changes = pls_formula_uses(p->condition, TIME) || pls_formula_uses(p->condition, TEMPERATURE);
     return PLS_OK;

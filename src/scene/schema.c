@@ -303,7 +303,8 @@ static const pls_key keys[] = {
      "number in (0, 1) that each body draws; a bond takes the mean of its "
      "two points"},
     {"bond", "toughness", PLS_KEY_NUMBER, OPEN, OF_POINT, NULL, NULL, "", "1", POSITIVE,
-     "likewise, times what bonds withstand: the critical stretch or energy (of which `fracture_energy` sets the mean), or the strengths of "
+     "likewise, times what bonds withstand: the critical stretch or energy (which `fracture_energy` sets for a toughness of 1), or the "
+     "strengths of "
      "beams. Weibull's: \"(-log(chance))^(1/6)\""},
     {"bond", "seed", PLS_KEY_INTEGER, 0, 0, NULL, NULL, "", "1", 0, 9007199254740992.0, "of `chance`"},
     {"bond", "heat", PLS_KEY_SECTION, 0, 0, NULL, "heat", "", NULL, ANY, "temperature of the points"},

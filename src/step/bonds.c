@@ -223,12 +223,24 @@ static pls_status draw(const pls_world *world, const pls_bonds_def *def, drawing
     return find_stretch(world, def, d->law, &plan->stretch, &plan->energy);
 }
 
+/// A body has one temperature.
+static pls_status check_heat(const pls_world *world, const pls_bonds_def *def, const pls_bond_point *point, size_t count)
+{
+    for (size_t s = 0; !isnan(def->heat.conductivity) && s < world->bond_count; ++s)
+        for (size_t p = 0; world->bond[s].conditions.warmth && p < count; ++p)
+            if (point[p].number < world->bond[s].numbers && world->bond[s].point_of[point[p].number] != PLS_NO_POINT)
+                return pls_fail(PLS_INVALID_ARGUMENT, "bonds '%s': body %u has a temperature in bonds '%s' already", def->name,
+                                point[p].number, world->bond[s].name);
+    return PLS_OK;
+}
+
 static pls_status make(pls_world *world, const pls_bonds_def *def, pls_bond_set *set)
 {
     drawing d = {NULL};
     size_t count = 0;
     pls_bond_plan plan = {.def = def, .materials = world->laws.material_count, .time = world->time};
     pls_status status = draw(world, def, &d, &plan, &count);
+    if (status == PLS_OK) status = check_heat(world, def, d.point, count);
     if (status == PLS_OK)
     {
         status = pls_bond_set_make(set, &plan, d.point, count, &world->bodies, &world->domain);
@@ -692,22 +704,18 @@ static pls_status find_stiffness(const pls_world *world, pls_bond_set *set)
     return status;
 }
 
-/// As it was made, times what the stiffest point is stiffer by now; and what conduction asks for: h < 1/l of the largest eigenvalue l, as a rate whose bound 2/w is that.
+/// As it was made, times what the stiffest point is stiffer by now.
 static double rate_of(const pls_bond_set *set)
 {
-    const double stiffness = set->conditions.row ? fmax(set->conditions.stiffest, 1.0) * set->stiffness : set->stiffness;
-    return fmax(stiffness, 4.0 * set->conditions.fastest * set->conditions.fastest);
+    return set->conditions.row ? fmax(set->conditions.stiffest, 1.0) * set->stiffness : set->stiffness;
 }
 
-bool pls_bonds_conduct_faster(const pls_world *world, uint32_t number)
+double pls_bonds_heat_step(const pls_world *world, const char **name)
 {
+    double fastest = 0.0;
     for (size_t s = 0; s < world->bond_count; ++s)
-    {
-        const pls_bond_set *set = &world->bond[s];
-        const double conduction = 4.0 * set->conditions.fastest * set->conditions.fastest;
-        if (number < set->numbers && set->point_of[number] != PLS_NO_POINT && conduction >= rate_of(set) && conduction > 0.0) return true;
-    }
-    return false;
+        if (world->bond[s].conditions.fastest > fastest) fastest = world->bond[s].conditions.fastest, *name = world->bond[s].name;
+    return fastest > 0.0 ? 1.0 / fastest : INFINITY;
 }
 
 double pls_bonds_rate(const pls_world *world, uint32_t number, bool of_rotation)

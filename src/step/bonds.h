@@ -19,8 +19,8 @@ bool pls_bonds_dilate_at_all(const pls_world *world);
 bool pls_bonds_hold(const pls_world *world, uint32_t a, uint32_t b);
 /// What bonds add to the stiffness of a body, by its number, against translation or rotation: a bound of the largest eigenvalue of M^-1 K of the sets it is in, as they were made [1/s^2].
 double pls_bonds_rate(const pls_world *world, uint32_t number, bool of_rotation);
-/// Whether conduction of heat, not stiffness, makes that rate in a set it is in.
-bool pls_bonds_conduct_faster(const pls_world *world, uint32_t number);
+/// The longest step that is stable for heat in bonds, and the set that sets it (`name` stays where there is no heat); infinite: none [s].
+double pls_bonds_heat_step(const pls_world *world, const char **name);
 /// Add, by numbers of bodies, the energies that their families store and that bonds held when they broke [J].
 void pls_bonds_energies(const pls_world *world, double *stored, double *broken);
 /// Damage of a body as its sets have it now.

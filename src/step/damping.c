@@ -11,7 +11,7 @@
 //
 //     w^2 = -sum u . (F(t) - F(t - h)) / (h sum m u^2)        (none where that is negative)
 //
-// Nothing is remembered: forces of the last two steps are there.
+// The sum with the old forces is taken at the beginning of the step, where they are known to the last bit; nothing is remembered from step to step.
 
 #include "step/world.h"
 
@@ -22,7 +22,7 @@
 
 bool pls_damps(const pls_world *world) { return world->def.local_damping > 0.0 || world->def.relaxation; }
 
-/// Components a row holds in a line, and which of them are free.
+/// Axes of a row that are prescribed.
 static unsigned driven_axes(const pls_world *world, uint32_t row)
 {
     const uint32_t motion = world->bodies.kind[row].motion;
@@ -69,47 +69,51 @@ void pls_damp_locally(pls_world *world)
 
 // ---- relaxation ------------------------------------------------------------------------------------------------------------------------------------------
 
-/// What is summed over bodies: m u^2, and the work of the change of forces.
-typedef struct quotient
-{
-    double mass, stiffness;
-} quotient;
+typedef struct pls_quotient quotient;
 
-static void add_body(const pls_world *world, uint32_t row, quotient *q)
+/// `ahead`: from velocities and forces at the beginning of the step, else from those at its end.
+static void add_body(const pls_world *world, uint32_t row, bool ahead, quotient *q)
 {
     const pls_bodies *b = &world->bodies;
     const pls_body_load *load = &b->load[row];
-    const pls_body_before *before = &b->before[row];
     const pls_body_place *place = &b->place[row];
     const pls_body_spin *spin = &b->spin[row];
     const double force[6] = {load->fx, load->fy, load->fz, load->tx, load->ty, load->tz};
-    const double last[6] = {before->fx, before->fy, before->fz, before->tx, before->ty, before->tz};
     const double velocity[6] = {place->vx, place->vy, place->vz, spin->wx, spin->wy, spin->wz};
     const unsigned driven = driven_axes(world, row);
     for (unsigned c = 0; c < 6; ++c)
     {
         const double inverse = c < 3 ? load->inv_mass : load->inv_inertia;
         if (driven & 1u << c || !(inverse > 0.0)) continue;
-        const double u = velocity[c] - 0.5 * world->dt * inverse * force[c];
+        const double u = velocity[c] + (ahead ? 0.5 : -0.5) * world->dt * inverse * force[c];
         q->mass += u * u / inverse;
-        q->stiffness -= u * (force[c] - last[c]) / world->dt;
+        q->power += u * force[c];
     }
 }
 
 /// In order of numbers, by blocks.
-static pls_status sum_quotient(const pls_world *world, quotient *total)
+static pls_status sum_quotient(pls_world *world, bool ahead, quotient *total)
 {
     const pls_bodies *b = &world->bodies;
     const size_t blocks = pls_block_count(b->numbers, PLS_BLOCK);
-    quotient *part = NULL;
-    PLS_TRY(pls_allocate(&part, blocks, sizeof *part, "sums over bodies"));
+    PLS_TRY(pls_reserve(&world->quotient, &world->quotient_capacity, blocks, sizeof *world->quotient, "sums over bodies"));
+    quotient *part = world->quotient;
+    for (size_t k = 0; k < blocks; ++k) part[k] = (quotient){0.0, 0.0};
 #pragma omp parallel for schedule(static)
     for (size_t k = 0; k < blocks; ++k)
         for (size_t n = k * PLS_BLOCK; n < pls_block_end(k, PLS_BLOCK, b->numbers); ++n)
-            if (b->row_of[n] != PLS_NO_ROW && is_free(world, b->row_of[n])) add_body(world, b->row_of[n], &part[k]);
+            if (b->row_of[n] != PLS_NO_ROW && is_free(world, b->row_of[n])) add_body(world, b->row_of[n], ahead, &part[k]);
     *total = (quotient){0.0, 0.0};
-    for (size_t k = 0; k < blocks; ++k) total->mass += part[k].mass, total->stiffness += part[k].stiffness;
-    pls_release(&part);
+    for (size_t k = 0; k < blocks; ++k) total->mass += part[k].mass, total->power += part[k].power;
+    return PLS_OK;
+}
+
+pls_status pls_relax_before(pls_world *world)
+{
+    if (!world->def.relaxation) return PLS_OK;
+    quotient q;
+    PLS_TRY(sum_quotient(world, true, &q));
+    world->power_before = q.power;
     return PLS_OK;
 }
 
@@ -139,9 +143,10 @@ pls_status pls_relax(pls_world *world)
 {
     if (!world->def.relaxation) return PLS_OK;
     quotient q;
-    PLS_TRY(sum_quotient(world, &q));
-    if (!(q.mass > 0.0) || !(q.stiffness > 0.0)) return PLS_OK;
-    const double w = fmin(sqrt(q.stiffness / q.mass), 2.0 / world->dt); // no motion of a stable step is faster
+    PLS_TRY(sum_quotient(world, false, &q));
+    const double stiffness = (world->power_before - q.power) / world->dt;
+    if (!(q.mass > 0.0) || !(stiffness > 0.0)) return PLS_OK;
+    const double w = fmin(sqrt(stiffness / q.mass), 2.0 / world->dt); // no motion of a stable step is faster
     const double kept = exp(-2.0 * w * world->dt);
 #pragma omp parallel for schedule(static)
     for (size_t row = 0; row < world->bodies.count; ++row)

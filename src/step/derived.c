@@ -3,6 +3,8 @@
 #include "step/derived.h"
 
 #include "base/alloc.h"
+#include "bond/builtin.h"
+#include "bond/elastic_plastic.h"
 #include "step/bonds.h"
 
 #include <string.h>
@@ -21,7 +23,11 @@ static pls_status find_fragments(const pls_world *world, pls_derived *d, const v
     PLS_TRY(pls_reserve(&d->fragment, &d->fragments, b->count, sizeof *d->fragment, "fragments of bodies"));
     PLS_TRY(pls_reserve(&d->by_number, &d->numbers, b->numbers, sizeof *d->by_number, "fragments of bodies"));
     pls_bonds_fragments(world, d->by_number);
-    for (size_t row = 0; row < b->count; ++row) d->fragment[row] = d->by_number[b->kind[row].number];
+    for (size_t row = 0; row < b->count; ++row)
+    {
+        const uint32_t number = b->kind[row].number;
+        d->fragment[row] = d->by_number[number] == PLS_NO_FRAGMENT ? number : d->by_number[number];
+    }
     *data = d->fragment;
     return PLS_OK;
 }
@@ -35,12 +41,11 @@ static bool temperature_of(const pls_bond_set *set, uint32_t point, double *valu
     return set->conditions.warmth != NULL;
 }
 
-/// Of laws with a memory per point the first number.
 static bool plastic_strain_of(const pls_bond_set *set, uint32_t point, double *value)
 {
-    const bool remembers = set->states.ops && set->states.ops->point_memories > 0;
-    if (remembers) *value = set->states.of_point[point][0];
-    return remembers;
+    const bool flows = set->states.ops == &pls_elastic_plastic_bonds;
+    if (flows) *value = set->states.of_point[point][PLS_PLASTIC_STRAIN];
+    return flows;
 }
 
 static pls_status find_values(const pls_world *world, point_value *function, double **value, size_t *capacity, const void **data)
@@ -71,5 +76,6 @@ pls_status pls_derive_field(const pls_world *world, const pls_field *field, pls_
                              .components = field->components};
     if (strcmp(field->name, "fragment") == 0) return find_fragments(world, d, &view->data);
     if (strcmp(field->name, "temperature") == 0) return find_values(world, temperature_of, &d->temperature, &d->temperatures, &view->data);
+    if (strcmp(field->name, "plastic_strain") != 0) return pls_fail(PLS_NOT_FOUND, "nobody finds the field '%s'", field->name);
     return find_values(world, plastic_strain_of, &d->plastic_strain, &d->strains, &view->data);
 }

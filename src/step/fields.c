@@ -61,8 +61,7 @@ static const pls_field body_fields[] = {
     PLS_BODY_FIELDS(BODY_FIELD)
 #undef BODY_FIELD
         {"fragment", PLS_U32, 1, PLS_FIELD_DERIVED, "",
-         "lowest number of the bodies that bonds hold together with it, its own where none holds it; 4294967295 for bodies without bonds",
-         0, 0},
+         "lowest number of the bodies that bonds hold together with it, its own where none holds it", 0, 0},
     {"temperature", PLS_F64, 1, PLS_FIELD_DERIVED, "K", "of points of bonds with heat, else no number", 0, 0},
     {"plastic_strain", PLS_F64, 1, PLS_FIELD_DERIVED, "",
      "equivalent plastic strain of points of elastic-plastic bonds (of other bond laws the first number they remember of a point), else no "

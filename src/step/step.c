@@ -57,6 +57,7 @@ static pls_status complete_steps(pls_world *world, uint64_t end, bool *begun)
 /// Half kick and drift.
 static pls_status begin_step(pls_world *world)
 {
+    PLS_TRY(pls_relax_before(world));
     PLS_TRY(pls_special_before(world));
     pls_states_before(world);
     return pls_begin_bodies(world);

@@ -369,8 +369,7 @@ static void sweep_bonds(sweep *s, share *mine)
     meet(s, &s->bonds_placed, mine, pls_bonds_placed);
     if (pls_bonds_dilate_at_all(s->world))
     {
-        const pls_status status = pls_bonds_dilate(s->world, s->input.dt, mine->thread, mine->threads);
-        if (mine->status == PLS_OK) mine->status = status;
+        if (mine->status == PLS_OK) mine->status = pls_bonds_dilate(s->world, s->input.dt, mine->thread, mine->threads);
         meet(s, &s->bonds_dilated, mine, pls_bonds_dilated);
     }
     pls_bonds_act(s->world, mine->thread, mine->threads);

@@ -291,9 +291,7 @@ static pls_status refuse(const pls_world *world, int coordination, const pls_ste
                  "many, "
                  "say how many by time.coordination.",
                  coordination);
-    if (!e->damping_limits && e->bonds > 0.5 * e->stiffness && pls_bonds_conduct_faster(world, e->body))
-        snprintf(limit, sizeof limit, "heat in its bonds limits it: fastest rate %.4g 1/s", 0.5 * sqrt(e->bonds));
-    else if (!e->damping_limits && e->bonds > 0.5 * e->stiffness)
+    if (!e->damping_limits && e->bonds > 0.5 * e->stiffness)
         snprintf(limit, sizeof limit, "its bonds limit it: natural frequency %.4g 1/s", sqrt(e->bonds));
     else if (e->damping_limits)
         snprintf(limit, sizeof limit, "its dashpots limit it: damping rate %.4g 1/s, against a natural frequency of %.4g 1/s", e->damping,
@@ -309,8 +307,21 @@ static pls_status refuse(const pls_world *world, int coordination, const pls_ste
         world->dt, e->dt, world->time, e->body, e->contacts, limit, assumed);
 }
 
+/// Heat has a step of its own, whatever bodies do.
+static pls_status check_heat(const pls_world *world)
+{
+    const char *name = "";
+    const double longest = pls_bonds_heat_step(world, &name);
+    if (world->dt <= longest || world->def.allow_unstable) return PLS_OK;
+    return pls_fail(PLS_UNSTABLE_STEP,
+                    "the time step %g s is larger than the stable step %.4g s of heat in bonds '%s'. Take dt: auto or a smaller dt (or "
+                    "time.allow_unstable: true)",
+                    world->dt, longest, name);
+}
+
 pls_status pls_choose_step(pls_world *world)
 {
+    const char *name = "";
     pls_step_estimate e;
     mark_near(world);
     mark_near_solids(world);
@@ -323,6 +334,7 @@ pls_status pls_choose_step(pls_world *world)
     }
     mark_none(world);
     PLS_TRY(status);
+    e.dt = fmin(e.dt, pls_bonds_heat_step(world, &name));
     if (world->dt == 0.0)
     {
         if (!isfinite(e.dt))
@@ -330,7 +342,7 @@ pls_status pls_choose_step(pls_world *world)
         world->dt = world->def.safety * e.dt;
         return PLS_OK;
     }
-    return PLS_OK;
+    return check_heat(world);
 }
 
 bool pls_stable_step_is_stale(const pls_world *world)

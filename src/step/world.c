@@ -136,6 +136,7 @@ void pls_world_destroy(pls_world *world)
     pls_release(&world->left);
     pls_release(&world->work);
     pls_release(&world->special);
+    pls_release(&world->quotient);
     if (world->derived) pls_derived_free(world->derived);
     pls_release(&world->derived);
     pls_release(&world);

@@ -89,6 +89,12 @@ typedef struct pls_share_left
     size_t waiting, taken;        ///< such groups; those that somebody has taken to finish
 } pls_share_left;
 
+/// What relaxation sums over bodies, u being the velocity of the middle of the step: m u^2 and u . F.
+struct pls_quotient
+{
+    double mass, power;
+};
+
 struct pls_world
 {
     pls_world_def def;
@@ -134,11 +140,14 @@ struct pls_world
     uint64_t step; ///< steps done
     double time;   ///< step * dt
     bool prepared;
-    double path;                 ///< bound on how much two bodies can have come nearer in all steps [m]
-    double overlap_due;          ///< length of the path from which an overlap may be too large [m]
-    double lost_due;             ///< likewise, from which a body may be lost [m]
-    double extent;               ///< size of the first arrangement [m], for lost bodies; 0 until measured
-    pls_vec3 centre;             ///< of the first arrangement [m]
+    double power_before; ///< of relaxation, within a step: power of the forces of its beginning on the velocities of its middle [W]
+    double path;         ///< bound on how much two bodies can have come nearer in all steps [m]
+    double overlap_due;  ///< length of the path from which an overlap may be too large [m]
+    double lost_due;     ///< likewise, from which a body may be lost [m]
+    double extent;       ///< size of the first arrangement [m], for lost bodies; 0 until measured
+    pls_vec3 centre;     ///< of the first arrangement [m]
+    struct pls_quotient *quotient; ///< scratch of relaxation, per block of bodies
+    size_t quotient_capacity;
     struct pls_derived *derived; ///< fields that nobody keeps, while somebody looks at them
     void *persisting;            ///< contact table while persist.c reads it
 };
@@ -200,6 +209,8 @@ bool pls_damps(const pls_world *world);
 /// Local damping of the forces that the step has found, before special bodies are finished; relaxation of the velocities of its end.
 void pls_damp_locally(pls_world *world);
 pls_status pls_relax(pls_world *world);
+/// At the beginning of the step: what relaxation asks of the forces then.
+pls_status pls_relax_before(pls_world *world);
 
 // guard.c
 pls_status pls_guard_finite(pls_world *world);

@@ -212,20 +212,25 @@ static void a_tumbling_cluster_keeps_energy_and_momenta(void **state)
 
 enum { POINTS = 11 };
 
-static void slow_down(double time, pls_vec3 position, pls_vec3 velocity, uint32_t body, pls_vec3 *force, pls_vec3 *torque)
+static verify_scene open_relaxing(double dt)
 {
-    (void)time, (void)position, (void)torque, (void)body;
-    const double acceleration = -0.002, rate = 7.0; // [m/s^2]; twice the first natural frequency [1/s]
-    const double mass = body == 0 || body == POINTS - 1 ? 0.05 : 0.1;
-    *force = pls_vec(-rate * mass * velocity.x, mass * acceleration - rate * mass * velocity.y, 0.0);
+    pls_world_def def = pls_default_world_def(2);
+    def.dt = dt;
+    def.coordination = 0;
+    def.relaxation = true;
+    const verify_value law[] = {{"kn", 1.0}, {NULL, 0.0}};
+    verify_scene scene = verify_open(&def, "elastic", law);
+    MUST(pls_world_set_material_value(scene.world, scene.grain, "young_modulus", young));
+    MUST(pls_world_set_material_value(scene.world, scene.grain, "poisson_ratio", poisson));
+    return scene;
 }
 
 /// Eleven points of 1 kg in all, halved at the ends, on 1 m, under an acceleration across: the tip goes to the sum over point loads, m a x^2 (3 L - x)/(6 EI).
 static void a_cantilever_bends_as_under_its_point_loads(void **state)
 {
     (void)state;
-    verify_scene scene = open_scene(2, 1e-4);
-    const verify_field field = {slow_down, NULL};
+    const double a = -2e-3; // the deflection is 3e-4 of the length: what is not linear is of 1e-7
+    verify_scene scene = open_relaxing(1e-4);
     double expected = 0.0;
     pls_body_id tip = {0, 0};
     for (int k = 0; k < POINTS; ++k)
@@ -234,15 +239,15 @@ static void a_cantilever_bends_as_under_its_point_loads(void **state)
         pls_body_def def = verify_ball_def(&scene, 0.04, mass, pls_vec(x, 0, 0), pls_vec(0, 0, 0));
         if (k == 0) def.motion.axes = PLS_AXIS_ALL;
         tip = verify_add(&scene, &def);
-        expected += mass * -0.002 * x * x * (3.0 - x) / (6.0 * bending());
+        expected += mass * a * x * x * (3.0 - x) / (6.0 * bending());
     }
     join(&scene, 0.15, 0.0, 0.0);
-    verify_add_field(scene.world, &field);
-    MUST(pls_world_run(scene.world, 100000));
+    MUST(pls_world_add_gravity(scene.world, pls_vec(0, a, 0)));
+    MUST(pls_world_run(scene.world, 125000));
     const double found = verify_motion(scene.world, tip).position.y;
-    if (!(fabs(found / expected - 1.0) < 1e-5))
+    if (!(fabs(found / expected - 1.0) < 1e-6))
         fail_msg("the tip is at %.9g m, the loads say %.9g m (%g off)", found, expected, found / expected - 1.0);
-    assert_true(fabs(expected / (-0.002 / (8.0 * bending())) - 1.0033) < 1e-3); // 0.33 % from the evenly spread load
+    assert_true(fabs(expected / (a / (8.0 * bending())) - 1.0033) < 1e-3); // 0.33 % from the evenly spread load
     verify_close(&scene);
 }
 
@@ -309,14 +314,7 @@ static void the_end_follows_the_elastica(void **state)
     const double loads[] = {0.01, 2.0, 2.1, 5.0}, tolerance[] = {1e-3, 0.01, 0.01, 0.01};
     for (size_t n = 0; n < 4; ++n)
     {
-        pls_world_def def = pls_default_world_def(2);
-        def.dt = 1e-4;
-        def.coordination = 0;
-        def.relaxation = true;
-        const verify_value law[] = {{"kn", 1.0}, {NULL, 0.0}};
-        verify_scene scene = verify_open(&def, "elastic", law);
-        MUST(pls_world_set_material_value(scene.world, scene.grain, "young_modulus", young));
-        MUST(pls_world_set_material_value(scene.world, scene.grain, "poisson_ratio", poisson));
+        verify_scene scene = open_relaxing(1e-4);
         const pls_body_id tip = make_cantilever(&scene, 21, 0.05);
         const verify_field field = {load_the_end, NULL};
         end_load = loads[n] * bending();

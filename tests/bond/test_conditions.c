@@ -167,6 +167,39 @@ static void a_free_body_grows_without_stress(void **state)
         }
 }
 
+static pls_status cooled(void *context, const pls_point_batch *points, double *values)
+{
+    const double *rate = context;
+    for (size_t k = 0; k < points->count; ++k) values[k] = *rate * (1.0 - points->temperature[k]);
+    return PLS_OK;
+}
+
+/// Heat limits the step though nothing can move, by conduction and by what is put in; what gets out of hand all the same stops the run.
+static void heat_has_a_stable_step_of_its_own(void **state)
+{
+    (void)state;
+    static double rate = 3000.0; // [W/(m^3 K)]: 500/s with rho c = 6 J/(m^3 K)
+    for (int source = 0; source < 2; ++source)
+    {
+        lattice_plan plan = lattice_default(3, 4);
+        plan.dt = 0.01;
+        plan.fixed = true;
+        plan.user = &rate;
+        plan.heat = (pls_heat_def){
+            .conductivity = source ? 0.0 : 30.0, .capacity = capacity, .reference = NAN, .initial = hot, .source = source ? cooled : NULL};
+        lattice b = lattice_make(&plan);
+        assert_int_equal(pls_world_prepare(b.scene.world), PLS_UNSTABLE_STEP);
+        assert_non_null(strstr(pls_last_message(), "of heat in bonds 'block'"));
+        lattice_free(&b);
+        plan.unstable = true;
+        b = lattice_make(&plan);
+        pls_status status = PLS_OK;
+        for (int k = 0; k < 200 && status == PLS_OK; ++k) status = pls_step(b.scene.world);
+        assert_int_equal(source ? status : PLS_UNSTABLE_STEP, PLS_UNSTABLE_STEP);
+        lattice_free(&b);
+    }
+}
+
 // ---- stiffness and toughness -----------------------------------------------------------------------------------------------------------------------------
 
 /// Half of the points, along x, are three times as stiff and half as tough.
@@ -280,8 +313,8 @@ static void toughness_counts_as_the_mean_of_both_points(void **state)
 {
     (void)state;
     static double toughness[2] = {0.4, 1.2};
-    static const char *const laws[] = {"bond_based", "linear_solid", "elastic_plastic", "beam"};
-    for (size_t law = 0; law < 4; ++law)
+    static const char *const laws[] = {"bond_based", "linear_solid", "elastic_plastic", "beam", "beam"};
+    for (size_t law = 0; law < 5; ++law)
     {
         lattice_plan plan = lattice_default(3, 1);
         plan.count[0] = 2;
@@ -294,7 +327,7 @@ static void toughness_counts_as_the_mean_of_both_points(void **state)
         plan.condition = tough_or_not;
         plan.user = toughness;
         double expected = 0.8 * 0.02;
-        if (law == 3) // strength is a tenth of the bulk modulus, E = 1.5 K at nu = 1/4: see lattice.c
+        if (law == 4) // strength is a tenth of the bulk modulus, E = 1.5 K at nu = 1/4: see lattice.c
             plan.critical_stretch = INFINITY, expected = 0.8 * 0.1 / 1.5;
         const double stretch = distance_at_break(plan) / plan.spacing - 1.0;
         assert_true(stretch > expected && stretch < expected + 1.5 * 2e-5 / plan.spacing);
@@ -505,6 +538,21 @@ static void refused(pls_bonds_def def, const char *why)
     lattice_free(&b);
 }
 
+/// The same bonds under another name.
+static void twice(pls_bonds_def def, const char *why)
+{
+    lattice_plan plan = lattice_default(3, 4);
+    lattice b = lattice_make(&plan);
+    pls_bonds_id id;
+    strcpy(def.name, "more");
+    def.horizon = plan.horizon;
+    MUST(pls_world_add_bonds(b.scene.world, &def, &id));
+    strcpy(def.name, "again");
+    assert_int_equal(pls_world_add_bonds(b.scene.world, &def, &id), PLS_INVALID_ARGUMENT);
+    assert_non_null(strstr(pls_last_message(), why));
+    lattice_free(&b);
+}
+
 static void what_is_wrong_is_said(void **state)
 {
     (void)state;
@@ -517,6 +565,7 @@ static void what_is_wrong_is_said(void **state)
     const double plastic[2] = {1.0, 0.0};
     def = good, def.ops = pls_builtin_bonds()[2], def.values = plastic, def.fracture = PLS_FRACTURE_ENERGY, def.fracture_energy = 1.0;
     refused(def, "do not break by energy");
+    def = good, def.heat = (pls_heat_def){.conductivity = 1.0, .capacity = 1.0}, twice(def, "has a temperature in bonds 'more' already");
     def = good, def.name[0] = '\0', def.ops = NULL, refused(def, "need a law");
 }
 
@@ -527,6 +576,7 @@ int main(void)
         cmocka_unit_test(heat_flows_down_and_is_kept),
         cmocka_unit_test(cracks_insulate),
         cmocka_unit_test(a_free_body_grows_without_stress),
+        cmocka_unit_test(heat_has_a_stable_step_of_its_own),
         cmocka_unit_test(stiffness_counts_times_the_moduli),
         cmocka_unit_test(energy_is_kept_where_points_differ),
         cmocka_unit_test(toughness_counts_as_the_mean_of_both_points),

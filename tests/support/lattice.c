@@ -75,6 +75,7 @@ lattice lattice_make(const lattice_plan *plan)
     def.thickness = plan->thickness;
     def.dt = plan->dt;
     def.coordination = 0;
+    def.allow_unstable = plan->unstable;
     def.upper =
         pls_vec(plan->spacing * (double)plan->count[0], plan->spacing * (double)plan->count[1], plan->spacing * (double)plan->count[2]);
     for (int a = 0; a < plan->dimension; ++a) def.periodic[a] = plan->periodic;
@@ -95,6 +96,7 @@ lattice lattice_make(const lattice_plan *plan)
         pls_body_def body = verify_body_def(&b.scene, b.scene.ball, b.reference[p]);
         body.mass = plan->density * lattice_volume(&b) * (i == 0 && plan->lighter > 0.0 ? plan->lighter : 1.0);
         if (2 * i >= plan->count[0]) body.material = second;
+        if (plan->fixed) body.motion.axes = PLS_AXIS_ALL;
         MUST(pls_world_add_body(b.scene.world, &body, &b.body[p]));
     }
     join(&b);

@@ -24,6 +24,8 @@ typedef struct lattice_plan
     double contact_stiffness; ///< kn of points that touch [N/m]
     double dt;                ///< [s]
     double stiffer;           ///< of the half with the larger x: its moduli by those of the other. 0: all alike
+    bool fixed;               ///< no point can move
+    bool unstable;            ///< any step is taken
     double fracture_energy;   ///< 0: not given
     pls_fracture fracture;
     pls_point_condition *condition; ///< as in pls_bonds_def
