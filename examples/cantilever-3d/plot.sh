@@ -12,7 +12,8 @@ set output '$results/tips.png'
 set datafile separator ','
 set datafile columnheaders
 set grid lc rgb '#dddddd'
-set key bottom left
+set key top right
+set yrange [-1:0.25]
 set xrange [0:10]
 set xlabel 't [s]'
 set ylabel 'height of the tip [m]'
